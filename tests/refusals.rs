@@ -38,12 +38,12 @@ fn a_cell_too_small_for_its_clumps_is_refused_where_it_is_stated() {
     // spheres of 63 mm would fit into 250 mm, clumps of 110 mm do not
     let found = errors(&oedometer("0.6 m], bed_width = 0.5 m per track", PRESS));
     let [(Code::E0610, message, at)] = &found[..] else { panic!("{found:?}") };
-    assert!(message.contains("up to 110 mm wide, more than a third of the cell's 250 mm"), "{message}");
+    assert!(message.contains("up to 110 mm wide, more than a third of the cell side of 250 mm"), "{message}");
     assert_eq!(at, &["0.5 m per track"]);
     let boxed = oedometer("0.3 m], bed_width = 1.2 m per track", "strain = 5 %, confinement = 60 kPa");
     let found = errors(&boxed.replace("spacing = 0.6 m", "spacing = 0.3 m"));
     let [(Code::E0610, message, at)] = &found[..] else { panic!("{found:?}") };
-    assert!(message.contains("the cell's 300 mm"), "{message}");
+    assert!(message.contains("the cell side of 300 mm"), "{message}");
     assert_eq!(at, &["0.3 m"]);
 }
 

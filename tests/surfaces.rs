@@ -75,7 +75,10 @@ fn what_is_wrong_with_a_file_is_said() {
     let facets = (whole.len() - 84) / 50;
     let (code, message) = mistake(whole[..whole.len() - 20].to_vec());
     assert_eq!(code, Code::E0606);
-    assert!(message.contains(&format!("a binary file of {facets} triangles that holds {}", facets - 1)), "{message}");
+    assert!(
+        message.contains(&format!("the header gives {facets} triangles, the file holds {}", facets - 1)),
+        "{message}"
+    );
     assert_eq!(mistake(b"ply".to_vec()).0, Code::E0606);
     let mut open = whole[..whole.len() - 50].to_vec();
     open[80..84].copy_from_slice(&(facets as u32 - 1).to_le_bytes());

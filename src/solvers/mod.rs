@@ -1,4 +1,4 @@
-//! Solvers: SI numbers in, SI numbers out.
+//! Solvers. All inputs and results are numbers in SI units.
 
 pub mod continuum;
 pub mod foundation;

@@ -129,7 +129,7 @@ fn pushes_that_cannot_be_are_refused() {
         (Push::Constant(f64::NAN), "applied force"),
         (table(&[], &[]), "times of an applied force"),
         (table(&[0.0, 1.0], &[0.0]), "number of applied forces"),
-        (table(&[1.0, 0.0], &[0.0, 1.0]), "each after the one before"),
+        (table(&[1.0, 0.0], &[0.0, 1.0]), "each above the time before it"),
         (Push::Cyclic { low: 0.0, high: 1.0, frequency: -1.0, start: 0.0, ramp: 0.0 }, "frequency"),
     ] {
         let refused = loaded(0.0, 0.0, push).check().unwrap_err().to_string();

@@ -1,7 +1,8 @@
-//! What holds the soil: fixed faces, rollers, quiet faces, nodes that are driven.
+//! Supports of the soil: fixed faces, rollers, quiet faces, driven nodes.
 //!
-//! A quiet face has dashpots of the impedance of the soil behind it (Lysmer and Kuhlemeyer 1969): `ρ c_p` across the face, `ρ c_s` along
-//! it, times its area. A dashpot acts on the mean of the velocities before and after a step, so that it never shortens the step.
+//! A quiet face has dashpots with the impedance of the soil behind it (Lysmer and Kuhlemeyer 1969): `ρ c_p` across the
+//! face, `ρ c_s` along it, times its area. A dashpot acts on the mean of the velocities before and after a step, so
+//! that it never shortens the step.
 
 use super::error::{SoilError, number};
 use super::mesh::FACES;
@@ -19,21 +20,21 @@ pub enum Side {
     Top,
 }
 
-/// What holds a side.
+/// The support of a side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Support {
     /// Its nodes do not move.
     Fixed,
     /// Its nodes do not move across it: a wall without friction, or a plane of symmetry.
     Roller,
-    /// Waves leave through it. In a state of rest it is a roller, and what it bears then it goes on bearing.
+    /// Waves leave the soil through it. In a state of rest it is a roller; the reactions at rest are kept afterwards.
     Quiet,
 }
 
 impl Side {
     pub const ALL: [Side; 6] = [Side::XMin, Side::XMax, Side::YMin, Side::YMax, Side::Bottom, Side::Top];
 
-    /// The axis across the side.
+    /// The axis perpendicular to the side.
     pub fn axis(self) -> usize {
         self as usize / 2
     }
@@ -44,10 +45,10 @@ impl Side {
 }
 
 impl Soil {
-    /// Holds a side of the soil. Nodes of two sides obey both.
+    /// Supports a side of the soil. Nodes of two sides have both supports.
     ///
     /// # Errors
-    /// No face of an element lies there.
+    /// No face of an element lies on this side.
     pub fn support(&mut self, side: Side, support: Support) -> Result<(), SoilError> {
         let faces = self.faces(side);
         if faces.is_empty() {
@@ -70,17 +71,17 @@ impl Soil {
         Ok(())
     }
 
-    /// Holds a node along an axis (0, 1, 2 for x, y, z) at a velocity \[m/s\]; 0 fixes it.
+    /// Holds a node along an axis (0, 1, 2 for x, y, z) at a velocity \[m/s\]; 0 fixes the node.
     ///
     /// # Errors
-    /// A velocity that is no number.
+    /// A velocity that is not a finite number.
     pub fn drive(&mut self, node: usize, axis: usize, velocity: f64) -> Result<(), SoilError> {
         number("the velocity of a driven node", velocity)?;
         self.nodes.driven[node][axis] = Some(velocity);
         Ok(())
     }
 
-    /// Lets go of a node along an axis.
+    /// Releases a node along an axis.
     pub fn release(&mut self, node: usize, axis: usize) {
         self.nodes.driven[node][axis] = None;
         self.measured = None;
@@ -95,7 +96,7 @@ impl Soil {
         nodes
     }
 
-    /// Faces of a side with their elements: those that lie in the outermost plane and belong to one element.
+    /// Faces of a side with their elements: faces in the outermost plane that belong to one element only.
     fn faces(&self, side: Side) -> Vec<(usize, [u32; 4])> {
         let nodes = self.mesh.nodes();
         let (axis, largest) = (side.axis(), side as usize % 2 == 1);

@@ -7,8 +7,8 @@ use super::flow::Memory;
 use super::soil::{Clock, Soil};
 use serde::{Deserialize, Serialize};
 
-/// Everything that changes while a soil moves. Mesh, materials, settings and supports are not in it: it is restored into a soil
-/// that was made in the same way. Serialise it with a format that keeps every bit of a number.
+/// All data that change while a soil moves. Mesh, materials, settings and supports are not included: the state is
+/// restored into a soil that was built in the same way. Serialise it with a format that keeps every bit of a number.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     clock: Clock,
@@ -21,7 +21,7 @@ pub struct State {
 }
 
 impl Soil {
-    /// The state as data. A soil restored from it goes on bit by bit as this one does.
+    /// The state as data. A soil restored from it continues bit by bit like this soil.
     pub fn state(&self) -> State {
         State {
             clock: self.clock,
@@ -34,10 +34,10 @@ impl Soil {
         }
     }
 
-    /// Takes up a state.
+    /// Restores a state.
     ///
     /// # Errors
-    /// It is of another soil; this one is left as it was then.
+    /// The state belongs to another soil; this soil is then unchanged.
     pub fn restore(&mut self, state: State) -> Result<(), SoilError> {
         let State { clock, displacement, velocity, external, borne, memories, ledger } = state;
         let expected = self.nodes.mass.len();

@@ -1,7 +1,8 @@
-//! A few hundred elements that one thread computes at a time.
+//! A few hundred elements that one thread computes together.
 //!
-//! A chunk holds the nodes of its elements and sums their forces there, so that nothing is shared while threads work. Chunks are
-//! cut by the number of elements alone and their forces are added in their order: any number of threads gives the same bits.
+//! A chunk holds the nodes of its elements and sums their forces there, so that threads share no data while they work.
+//! Chunks are cut by the number of elements alone and their forces are added in order: any number of threads gives the
+//! same bits.
 
 use super::flow::Memory;
 use super::kernel;
@@ -10,7 +11,7 @@ use super::mesh::Mesh;
 use super::shape::{Corners, Shape};
 use pulp::NullaryFnOnce;
 
-/// Elements of a chunk: their nodes fit into the first caches of a core.
+/// Elements of a chunk: their nodes fit into the first-level caches of a core.
 pub const ELEMENTS: usize = 480;
 
 /// Up to eight elements of one shape.
@@ -21,7 +22,7 @@ struct Batch {
     elements: [u32; LANES],
     /// Nodes of the chunk: corner, lane. Lanes without an element repeat the first.
     corners: [[u16; LANES]; 8],
-    /// What elements with a strength remember.
+    /// Memory of elements with a strength.
     memory: Option<Box<Memory>>,
 }
 
@@ -35,7 +36,7 @@ pub struct Chunk {
     place: Vec<[f64; 3]>,
 }
 
-/// What the elements of a chunk hold and lose \[J\].
+/// Energies stored and lost in the elements of a chunk \[J\].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Held {
     pub strain: f64,
@@ -43,7 +44,7 @@ pub struct Held {
 }
 
 impl Chunk {
-    /// All elements of a mesh in chunks; `shapes` says the shape of each element.
+    /// Cuts all elements of a mesh into chunks; `shapes` gives the shape of each element.
     pub fn cut(mesh: &Mesh, known: &[Shape], shapes: &[u32]) -> Vec<Chunk> {
         let mut local = vec![u16::MAX; mesh.nodes().len()];
         (0..shapes.len())
@@ -105,7 +106,7 @@ impl Chunk {
         pulp::Arch::new().dispatch(Pull { chunk: self, shapes, displacement, answer })
     }
 
-    /// What the elements remember, batch by batch.
+    /// Memories of the elements, batch by batch.
     pub fn memories(&self) -> impl Iterator<Item = &Memory> {
         self.batches.iter().filter_map(|batch| batch.memory.as_deref())
     }
@@ -121,18 +122,19 @@ impl Chunk {
     }
 }
 
-/// How elements answer to displacements.
+/// The response of elements to displacements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Answer {
-    /// Elastic, whatever their strength and their past.
+    /// Elastic, independent of strength and history.
     Linear,
-    /// With their strength, without remembering the answer.
+    /// With strength; the memory does not change.
     Tried,
-    /// With their strength, remembering the answer.
+    /// With strength; the memory is updated.
     Remembered,
 }
 
-/// Work for the widest instructions of the machine. A closure would not do: its body might be compiled without them.
+/// Work for the widest instructions of the machine. A closure would not do: the compiler might compile its body without
+/// them.
 struct Pull<'a> {
     chunk: &'a mut Chunk,
     shapes: &'a [Shape],

@@ -1,30 +1,33 @@
-//! What is left of a soil at rest when only some of its nodes are asked: their flexibility, and its inverse.
+//! A soil at rest reduced to some of its nodes: their flexibility, and its inverse.
 //!
-//! It stands in for a linear layer that is slow against its own vibrations (a layer of thickness H sounds at c/4H). It is exact at rest.
+//! It replaces a linear layer if the loading is slow compared with the vibrations of the layer (a layer of thickness H
+//! has the frequency c/4H). It is exact at rest.
 
 use super::error::SoilError;
 use super::rest::Factor;
 use super::soil::Soil;
 use nalgebra::DMatrix;
 
-/// The static response of some freedoms of a soil; all others are free of load.
+/// The static response of some degrees of freedom of a soil; all other degrees of freedom carry no load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Condensed {
-    /// Node and axis of each freedom.
+    /// Node and axis of each degree of freedom.
     pub freedoms: Vec<(usize, usize)>,
-    /// Displacement of each freedom per unit of force on each \[m/N\]; symmetric.
+    /// Displacement of each degree of freedom per unit force on each \[m/N\]; symmetric.
     pub flexibility: DMatrix<f64>,
 }
 
 impl Condensed {
-    /// Forces that hold the freedoms per unit of displacement of each \[N/m\]; `None` where one of them is held already.
+    /// Forces that hold the degrees of freedom per unit displacement of each \[N/m\]; `None` if one of them is held
+    /// already.
     pub fn stiffness(&self) -> Option<DMatrix<f64>> {
         self.flexibility.clone().cholesky().map(|factor| factor.inverse())
     }
 }
 
 impl Soil {
-    /// Condenses the elastic soil onto some freedoms, node and axis each. Every one costs a solution with the factor.
+    /// Condenses the elastic soil to some degrees of freedom, given by node and axis. Each costs one solution with the
+    /// factor.
     ///
     /// # Errors
     /// Nothing holds the soil, or the factor does not fit into memory.

@@ -1,17 +1,17 @@
-//! Where the work goes: a ledger of energies by kind.
+//! Energy balance: a ledger of energies by kind.
 
 use super::chunk::Held;
 use serde::{Deserialize, Serialize};
 
-/// Energies at the start of the last step \[J\], and what was done and lost since the watch began.
+/// Energies at the start of the last step \[J\], and work and losses since the watch began.
 ///
-/// Work is the trapezoidal rule of force over displacement, so that what remains unaccounted shrinks with the square of the step.
+/// Work is force times displacement by the trapezoidal rule, so the residual decreases with the square of the step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
     pub kinetic: f64,
-    /// In the elements, hourglass patterns included.
+    /// Strain energy of the elements, including hourglass patterns.
     pub strain: f64,
-    /// Lost to plastic flow, to stiffness damping and local damping, and through quiet faces.
+    /// Energy lost to plastic flow, to stiffness damping and local damping, and through quiet faces.
     pub plastic: f64,
     pub damping: f64,
     pub quiet: f64,
@@ -24,7 +24,7 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// What is there and was lost, less what was there and was done: 0 but for the error of the scheme \[J\].
+    /// Stored and lost energy, minus initial energy and work: 0 except for the error of the scheme \[J\].
     pub fn residual(&self) -> f64 {
         let there = self.kinetic + self.strain + self.plastic + self.damping + self.quiet;
         there - self.start - self.gravity - self.external - self.driven
@@ -38,10 +38,10 @@ pub(super) struct Halves {
     pub after: f64,
 }
 
-/// What the nodes say in a step.
+/// Sums over the nodes in a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Tally {
-    /// Sum of the squares of velocities \[m²/s²\]: no number where one is none.
+    /// Sum of the squares of velocities \[m²/s²\]: not a number if a velocity is not a number.
     pub speed: f64,
     pub kinetic: f64,
     pub damping: Halves,
@@ -75,10 +75,10 @@ impl Tally {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Ledger {
     pub watched: bool,
-    /// Whether a step has been entered.
+    /// Whether a step has been recorded.
     begun: bool,
     pub now: Energy,
-    /// Second halves of what the last step did and lost: damping, quiet, gravity, external, driven.
+    /// Second halves of the work and loss of the last step: damping, quiet, gravity, external, driven.
     pending: [f64; 5],
 }
 

@@ -1,34 +1,34 @@
-//! What can be wrong with a soil, its boundaries and its steps.
+//! Errors of a soil, its boundaries and its steps.
 
 use std::fmt;
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum SoilError {
-    /// A property of a material, counted from 0, that cannot be.
+    /// An invalid property of a material; materials count from 0.
     Material { number: usize, what: &'static str, value: f64, expected: &'static str },
-    /// A number of the soil or of its settings that cannot be.
+    /// An invalid number of the soil or of its settings.
     Value { what: &'static str, value: f64, expected: &'static str },
-    /// No element at all.
+    /// The soil has no element.
     Empty,
-    /// An element that names a node or a material that there is not.
+    /// An element names a node or a material that does not exist.
     Missing { element: usize, what: &'static str, number: usize },
-    /// A node of no element.
+    /// A node belongs to no element.
     Loose { node: usize },
     /// An element without volume, or turned inside out.
     Turned { element: usize, volume: f64 },
-    /// Grid lines must grow.
+    /// Grid lines must increase.
     Lines { axis: usize, at: usize },
     /// No face of an element lies on that side of the soil.
     NoFace { side: &'static str },
     /// A step beyond the limit \[s\].
     Step { dt: f64, limit: f64 },
-    /// The motion of a node is no number any more.
+    /// The motion of a node is not a finite number.
     Lost { node: usize, step: u64 },
-    /// Boundaries leave the soil free to move as a whole.
+    /// The boundaries allow the soil to move as a whole.
     NotHeld,
-    /// A factor that does not fit into memory.
+    /// The factor of the stiffness matrix does not fit into memory.
     TooLarge { unknowns: usize },
-    /// Plastic soil that finds no state of rest: what is left of the load after so many iterations.
+    /// No state of rest of plastic soil was found; `left` is the share of the load out of balance after the iterations.
     NoRest { iterations: usize, left: f64 },
     /// A state that belongs to another soil.
     OtherSoil { what: &'static str, expected: usize, found: usize },
@@ -48,30 +48,34 @@ impl fmt::Display for SoilError {
             SoilError::Loose { node } => write!(f, "node {node} of the soil belongs to no element"),
             SoilError::Turned { element, volume } => write!(
                 f,
-                "soil element {element} is turned inside out or too distorted (its volume is {volume:.3e} m^3); number its lower four nodes counterclockwise seen from above, then its upper four"
+                "soil element {element} is turned inside out or too distorted (its volume is {volume:.3e} m^3); number its four lower nodes counterclockwise, seen from above, then its four upper nodes"
             ),
             SoilError::Lines { axis, at } => {
-                write!(f, "the grid lines of the soil along {} must grow; line {at} does not", ["x", "y", "z"][*axis])
+                write!(
+                    f,
+                    "the coordinates of the grid lines of the soil along {} must increase; line {at} does not",
+                    ["x", "y", "z"][*axis]
+                )
             }
             SoilError::NoFace { side } => write!(f, "no face of a soil element lies on the side {side}"),
             SoilError::Step { dt, limit } => write!(
                 f,
-                "a step of {dt:.3e} s is above the limit of {limit:.3e} s of the soil; take a shorter step or larger elements"
+                "the time step of {dt:.3e} s is above the limit of the soil, {limit:.3e} s; take a shorter step or larger elements"
             ),
             SoilError::Lost { node, step } => write!(
                 f,
-                "the motion of node {node} of the soil is no number any more in step {step}; the forces on it are no numbers or grow without bound"
+                "the motion of node {node} of the soil is not a finite number in step {step}; the forces on the node are not finite or grow without bound"
             ),
-            SoilError::NotHeld => {
-                f.write_str("the soil has no state of rest: it can move as a whole; fix a face or put it on rollers")
-            }
+            SoilError::NotHeld => f.write_str(
+                "the soil has no state of rest because it can move as a whole; fix a face or put a face on rollers",
+            ),
             SoilError::TooLarge { unknowns } => write!(
                 f,
-                "the stiffness of the soil with {unknowns} unknowns does not fit into memory when it is factored; take larger elements or a shorter box"
+                "the factored stiffness matrix of the soil ({unknowns} unknowns) does not fit into memory; take larger elements or a shorter box"
             ),
             SoilError::NoRest { iterations, left } => write!(
                 f,
-                "the soil finds no state of rest: after {iterations} iterations {:.2e} of the load is out of balance; the load is beyond its bearing capacity or near to it",
+                "no state of rest of the soil was found: after {iterations} iterations a share of {:.2e} of the load is out of balance; the load is near or above the bearing capacity",
                 left
             ),
             SoilError::OtherSoil { what, expected, found } => {

@@ -1,7 +1,8 @@
-//! Forces of eight elements that may yield, and what they remember.
+//! Forces of eight elements that may yield, and their memory.
 //!
-//! An element remembers its plastic strain; stress follows from what is left of the strain. Hourglass patterns of an element that
-//! yields flow with it: their resistance is cut by the same part as the stress, so that it stays bounded when the soil fails.
+//! An element stores its plastic strain; stress follows from the elastic part of the strain. Hourglass patterns of a
+//! yielding element flow with it: their resistance is reduced by the same factor as the stress, so that it stays
+//! bounded when the soil fails.
 
 // loops run over axes of several arrays at once
 #![allow(clippy::needless_range_loop)]
@@ -12,10 +13,10 @@ use super::shape::{Corners, Shape};
 use super::yields::Yield;
 use serde::{Deserialize, Serialize};
 
-/// What eight elements remember.
+/// Memory of eight elements.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
-    /// One for the mean strain, ten for tetrahedra.
+    /// One point for the mean strain, ten for tetrahedra.
     pub points: Vec<Point>,
     /// Plastic part of the amplitudes of hourglass patterns, and their resistance in the last step.
     pattern_flow: Patterns,
@@ -43,7 +44,7 @@ impl Memory {
         Memory { points: vec![Point::default(); points], pattern_flow: zeros, resistance: zeros }
     }
 
-    /// Adds the forces of elements on their corners, and remembers.
+    /// Adds the forces of elements on their corners, and updates the memory.
     #[inline(always)]
     pub fn pull(&mut self, shape: &Shape, yields: &Yield, u: &Corners, force: &mut Corners) -> Work {
         match &shape.tetrahedra {
@@ -99,7 +100,7 @@ impl Memory {
                     kept.0[l] = kept.0[l].min(share.0[l]);
                 }
             }
-            // where one yields, all of the overlay share what it does to the pressure
+            // if one tetrahedron yields, its effect on the pressure is shared by the whole overlay
             let mut shared = stresses;
             tetrahedra.share_pressure(overlay, &mut shared);
             for i in 0..5 {
@@ -134,7 +135,7 @@ impl Memory {
     }
 }
 
-/// Stresses that the strength allows, and the part of the stress that is kept: 1 where nothing yields.
+/// Stresses allowed by the strength, and the share of the stress that is kept: 1 without yielding.
 #[inline(always)]
 fn correct(yields: &Yield, trial: &Tensor) -> (Tensor, Lanes) {
     let (mut corrected, mut kept) = (*trial, Lanes([1.0; LANES]));
@@ -150,7 +151,7 @@ fn correct(yields: &Yield, trial: &Tensor) -> (Tensor, Lanes) {
     (corrected, kept)
 }
 
-/// How much of a stress is left: the smaller of what is left of it and of its deviator.
+/// Remaining share of a stress: the smaller of the shares of the stress and of its deviator.
 fn share(stress: &[f64; 6], trial: &[f64; 6]) -> f64 {
     let size = |s: &[f64; 6], mean: f64| {
         let normal: f64 = s[..3].iter().map(|s| (s - mean).powi(2)).sum();
@@ -160,11 +161,11 @@ fn share(stress: &[f64; 6], trial: &[f64; 6]) -> f64 {
     let ratio = |left: f64, of: f64| if of > 0.0 { left / of } else { 1.0 };
     let whole = ratio(size(stress, 0.0), size(trial, 0.0));
     let deviator = ratio(size(stress, mean(stress)), size(trial, mean(trial)));
-    // just below 1 at most: something yields
+    // at most just below 1, because the element yields
     whole.min(deviator).min(1.0 - f64::EPSILON)
 }
 
-/// Plastic strain of the lanes that yield: what the stress leaves of the strain.
+/// Plastic strain of the yielding lanes: strain minus the elastic strain of the stress.
 #[inline(always)]
 fn flow_where(yields: &Yield, strain: &Tensor, point: &mut Point, kept: &Lanes) {
     for l in 0..LANES {

@@ -7,7 +7,8 @@ use super::lanes::Lanes;
 use super::shape::{Corners, Shape};
 use super::tetra::{TETRAHEDRA, Tetrahedra};
 
-/// Components xx, yy, zz, xy, yz, zx of a symmetric tensor; shear strains are those of the tensor, half of the angle.
+/// Components xx, yy, zz, xy, yz, zx of a symmetric tensor; shear strains are tensor components, half of the shear
+/// angle.
 pub type Tensor = [Lanes; 6];
 
 /// Amplitude or force of each hourglass pattern along each axis.
@@ -125,7 +126,7 @@ pub fn resistance(shape: &Shape, amplitudes: &Patterns) -> Patterns {
     found
 }
 
-/// Adds what a mean stress and hourglass resistances do to the corners.
+/// Adds the corner forces of a mean stress and of the hourglass resistances.
 #[inline(always)]
 pub fn spread(shape: &Shape, stress: &Tensor, resistance: &Patterns, force: &mut Corners) {
     for axis in 0..3 {
@@ -166,7 +167,7 @@ impl Tetrahedra {
         strains
     }
 
-    /// Gives the stresses of an overlay the mean pressure of all.
+    /// Sets the mean pressure of an overlay in all its stresses.
     #[inline(always)]
     pub fn share_pressure(&self, overlay: usize, stresses: &mut [Tensor; 5]) {
         let (mut mean, mut volume) = (Lanes::ZERO, 0.0);
@@ -177,7 +178,7 @@ impl Tetrahedra {
         replace_traces(stresses, mean * (1.0 / volume));
     }
 
-    /// Adds what the stress of a tetrahedron does to the corners; overlays count half.
+    /// Adds the corner forces of the stress of a tetrahedron; overlays count half.
     #[inline(always)]
     pub fn spread(&self, at: usize, stress: &Tensor, force: &mut Corners) {
         for axis in 0..3 {

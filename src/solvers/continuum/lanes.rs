@@ -1,7 +1,8 @@
-//! Eight numbers side by side: one of each of eight elements.
+//! Eight numbers side by side: one number for each of eight elements.
 //!
-//! Plain loops over plain arrays, which the compiler turns into the vector instructions of the function around them. No
-//! closures: their bodies might stay outside of it. No fused operations either, so that every machine gives the same bits.
+//! Plain loops over plain arrays, which the compiler turns into the vector instructions of the calling function. No
+//! closures: their bodies might be compiled outside it. No fused operations either, so that every machine gives the
+//! same bits.
 
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, AddAssign, Mul, Sub};

@@ -1,26 +1,27 @@
 //! The longest stable step.
 //!
-//! The leapfrog is stable below 2/ω of the fastest vibration. No vibration of a mesh is faster than the fastest of its elements
-//! alone (Fried 1972), which bounds ω from above; iterations of Lanczos on the mesh with its supports find ω itself, from below.
+//! The leapfrog is stable below 2/ω of the fastest vibration. No vibration of a mesh is faster than the fastest
+//! vibration of its single elements (Fried 1972), which bounds ω from above. Lanczos iterations on the mesh with its
+//! supports give ω itself, from below.
 
 use super::chunk::Answer;
 use super::error::SoilError;
 use super::soil::Soil;
 use super::step::pull;
 
-/// Lanczos comes from below: its frequency is raised by this part.
+/// Factor on the frequency by Lanczos, because the iteration approaches it from below.
 const MARGIN: f64 = 1.01;
 
 impl Soil {
-    /// The longest step that is allowed \[s\]: the bound by elements, or the measured limit less one per cent once it has been
+    /// The longest allowed step \[s\]: the bound by elements, or the measured limit less one per cent if it has been
     /// [measured](Soil::measure_limit).
     pub fn limit(&self) -> f64 {
         let bound = self.rates.iter().fold(0.0, |fastest: f64, &rate| fastest.max(rate));
         self.step_of(self.measured.map_or(bound, |measured| measured.min(bound)))
     }
 
-    /// The same with springs at nodes, such as contacts of grains: number of the node and stiffness \[N/m\]. Springs of one node
-    /// add up.
+    /// The same with springs at nodes, for example contacts of grains: number of the node and stiffness \[N/m\].
+    /// Springs of one node add up.
     pub fn limit_with(&self, springs: &[(usize, f64)]) -> f64 {
         let mut extra = vec![0.0; self.rates.len()];
         for &(node, stiffness) in springs {
@@ -32,19 +33,20 @@ impl Soil {
         self.step_of(self.measured.map_or(bound, |measured| bound.min(measured + added)))
     }
 
-    /// Measures the limit of this mesh with its supports by iterations of Lanczos, as elastic soil, and allows steps up to 0.99 of
-    /// it, which it returns \[s\]. A block of cubes stands a quarter more than the bound by elements says: its elements cannot all
-    /// pulse at once. Nodes that are let go later take the measure back.
+    /// Measures the limit of this mesh with its supports by Lanczos iterations, as elastic soil, and allows steps up to
+    /// 0.99 of the limit, which it returns \[s\]. For a block of cubes the limit is a quarter above the bound by
+    /// elements, because its elements cannot all vibrate freely at once. Releasing nodes later discards the
+    /// measurement.
     ///
     /// # Errors
-    /// No iteration, or nothing that could move.
+    /// Zero iterations, or no free node.
     pub fn measure_limit(&mut self, iterations: usize) -> Result<f64, SoilError> {
         super::error::within("the number of iterations", iterations as f64, iterations > 0, "a number above 0")?;
         self.measured = Some(self.lanczos(iterations)? * MARGIN * MARGIN);
         Ok(self.limit())
     }
 
-    /// Largest squared frequency \[1/s²\] by Lanczos from a start that has a part of every vibration.
+    /// Largest squared frequency \[1/s²\] by Lanczos, from a start vector with a part of every vibration.
     pub(super) fn lanczos(&self, iterations: usize) -> Result<f64, SoilError> {
         let free = |node: usize, axis: usize| self.nodes.driven[node][axis].is_none();
         let mut chunks = self.chunks.clone();
@@ -98,7 +100,8 @@ impl Soil {
         Ok(nalgebra::DMatrix::from_fn(order, order, entry).symmetric_eigenvalues().max())
     }
 
-    /// 2/ω, or less where stiffness damping lags by half a step, or where local damping adds to forces that turn a node round.
+    /// 2/ω, or less if stiffness damping lags by half a step, or if local damping increases the forces that reverse a
+    /// node.
     fn step_of(&self, rate: f64) -> f64 {
         let frequency = (rate * (1.0 + self.settings.damping.local)).sqrt();
         let ratio = 0.5 * self.settings.damping.stiffness * frequency;

@@ -1,4 +1,4 @@
-//! Stresses of elements and forces of supports, for those who look.
+//! Stresses of elements and forces of supports.
 
 use super::chunk::ELEMENTS;
 use super::flow::Memory;
@@ -31,14 +31,14 @@ impl Soil {
         }
     }
 
-    /// The force of the elements on a node at the displacements of the last step \[N\]. At a held node at rest its support bears
-    /// the opposite less gravity and the caller's forces.
+    /// The force of the elements on a node at the displacements of the last step \[N\]. At a held node at rest, the
+    /// reaction of the support is the opposite force minus gravity and the forces of the caller.
     pub fn internal_force(&self, node: usize) -> [f64; 3] {
         self.nodes.pull(&self.chunks, node)
     }
 }
 
-/// Mean stress of a body by the forces that it exerts on its corners: `σ = -Σ f x / V`.
+/// Mean stress of a body from its forces on its corners: `σ = -Σ f x / V`.
 fn mean_stress(force: &Corners, corners: &[[f64; 3]; 8], volume: f64) -> [f64; 6] {
     let mut stress = [0.0; 6];
     for (i, j) in (0..3).flat_map(|i| (0..=i).map(move |j| (i, j))) {

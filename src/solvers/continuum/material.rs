@@ -1,9 +1,9 @@
-//! What an element is made of.
+//! The material of an element.
 
 use super::error::SoilError;
 use serde::{Deserialize, Serialize};
 
-/// An isotropic elastic material, with a strength where it can yield.
+/// An isotropic elastic material, with a strength if it can yield.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// \[kg/m³\]
@@ -12,20 +12,21 @@ pub struct Material {
     pub youngs_modulus: f64,
     /// From above -1 to below 0.5.
     pub poisson_ratio: f64,
-    /// `None` stays elastic under any load.
+    /// With `None` it stays elastic under any load.
     pub strength: Option<Strength>,
 }
 
-/// Strength of Mohr and Coulomb with a tension cut-off, perfectly plastic.
+/// Mohr-Coulomb strength with a tension cut-off, perfectly plastic.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Strength {
     /// \[Pa\]
     pub cohesion: f64,
     /// \[rad\]
     pub friction_angle: f64,
-    /// \[rad\]; equal to the friction angle the flow is associated, 0 it keeps its volume.
+    /// \[rad\]; equal to the friction angle for associated flow, 0 for flow at constant volume.
     pub dilation_angle: f64,
-    /// Largest tension \[Pa\]. Friction bounds it too, at `cohesion / tan(friction_angle)`; without friction it may be infinite.
+    /// Largest tension \[Pa\]. Friction limits it too, to `cohesion / tan(friction_angle)`; without friction it may be
+    /// infinite.
     pub tension: f64,
 }
 
@@ -65,6 +66,6 @@ impl Material {
         want(dilates, "the dilation angle", dilation_angle, "from 0 to the friction angle, rad")?;
         want(tension >= 0.0, "the tension limit", tension, "a number from 0")?;
         let some = cohesion > 0.0 || friction_angle > 0.0;
-        want(some, "the cohesion", cohesion, "above 0 where there is no friction")
+        want(some, "the cohesion", cohesion, "above 0 if there is no friction")
     }
 }

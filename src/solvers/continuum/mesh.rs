@@ -1,4 +1,4 @@
-//! The soil cut into hexahedra of eight nodes, each with its material.
+//! The soil divided into hexahedra with eight nodes, each with its material.
 
 use super::error::SoilError;
 use super::material::Material;
@@ -8,11 +8,11 @@ use super::surface::Surface;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Element {
     pub nodes: [u32; 8],
-    /// Place in the list of materials.
+    /// Index in the list of materials.
     pub material: u32,
 }
 
-/// Places along each axis of the corners of an element, in the order of its nodes: -1 or 1.
+/// Position of the corners of an element along each axis, in the order of its nodes: -1 or 1.
 pub(super) const CORNERS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
@@ -38,10 +38,10 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Any hexahedra. Such a mesh has no [`surface`](Mesh::surface).
+    /// A mesh of any hexahedra. Such a mesh has no [`surface`](Mesh::surface).
     ///
     /// # Errors
-    /// Elements that name what there is not or have no volume, loose nodes, materials that cannot be.
+    /// Elements that name a node or a material that does not exist, or have no volume; loose nodes; invalid materials.
     pub fn new(nodes: Vec<[f64; 3]>, elements: Vec<Element>, materials: Vec<Material>) -> Result<Mesh, SoilError> {
         if elements.is_empty() {
             return Err(SoilError::Empty);
@@ -68,19 +68,20 @@ impl Mesh {
         Ok(Mesh { nodes, elements, materials, surface: None })
     }
 
-    /// A box between grid lines \[m\], equally spaced or not. `material_of(i, j, k)` says the material of the element between
-    /// lines i and i + 1 along x, j along y and k along z; `None` leaves the place empty. Elements and nodes are numbered along
-    /// z first, then y, then x, so that those of a slice across the track stand together.
+    /// A box between grid lines \[m\], equally spaced or not. `material_of(i, j, k)` gives the material of the element
+    /// between lines i and i + 1 along x, j along y and k along z; `None` leaves the place empty. Elements and nodes
+    /// are numbered along z first, then y, then x, so that the elements and nodes of a slice across the track are
+    /// contiguous.
     ///
     /// # Errors
-    /// Lines that do not grow, no element, materials that cannot be.
+    /// Lines that do not increase, no element, invalid materials.
     pub fn grid(
         lines: [&[f64]; 3],
         materials: Vec<Material>,
         material_of: impl Fn(usize, usize, usize) -> Option<usize>,
     ) -> Result<Mesh, SoilError> {
         for (axis, lines) in lines.iter().enumerate() {
-            // a line that is no number does not grow
+            // a line that is not a number does not increase
             if let Some(at) =
                 (1..lines.len()).find(|&i| lines[i].is_nan() || lines[i] <= lines[i - 1] || lines[0].is_nan())
             {
@@ -122,14 +123,14 @@ impl Mesh {
         let elements: Vec<Element> = found.iter().map(element).collect();
         let mut tops = vec![None; (count[0] - 1) * (count[1] - 1)];
         for (([i, j, _], _), element) in found.iter().zip(&elements) {
-            // elements of a column come from below
+            // elements of a column are in the order from below
             tops[i * (count[1] - 1) + j] = Some(FACES[5].map(|corner| element.nodes[corner]));
         }
         let surface = Surface::new([lines[0].to_vec(), lines[1].to_vec()], tops);
         Ok(Mesh { surface: Some(surface), ..Mesh::new(nodes, elements, materials)? })
     }
 
-    /// Places of the nodes of the soil as it was made \[m\].
+    /// Positions of the nodes of the undeformed soil \[m\].
     pub fn nodes(&self) -> &[[f64; 3]] {
         &self.nodes
     }
@@ -147,7 +148,7 @@ impl Mesh {
         self.surface.as_ref()
     }
 
-    /// Places of the corners of an element \[m\].
+    /// Positions of the corners of an element \[m\].
     pub(super) fn corners(&self, element: usize) -> [[f64; 3]; 8] {
         self.elements[element].nodes.map(|node| self.nodes[node as usize])
     }

@@ -1,4 +1,4 @@
-//! Soil: eight-node hexahedra of small strain, explicit in time; states of rest by a sparse factorisation.
+//! Soil: eight-node hexahedra with small strains, explicit in time; states of rest by a sparse factorisation.
 //!
 //! ```
 //! use trackbed::solvers::continuum::{Material, Mesh, Settings, Side, Soil, Support};

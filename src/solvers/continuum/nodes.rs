@@ -1,31 +1,31 @@
-//! The nodes of the soil: their motion, their masses, and where their forces come together.
+//! The nodes of the soil: their motion, their masses, and the sums of their forces.
 
 use super::chunk::Chunk;
 use super::mesh::Mesh;
 use super::shape::Shape;
 
-/// What is of one node each.
+/// Data of each node.
 #[derive(Debug, Clone)]
 pub struct Nodes {
     pub displacement: Vec<[f64; 3]>,
     pub position: Vec<[f64; 3]>,
     pub velocity: Vec<[f64; 3]>,
     pub mass: Vec<f64>,
-    /// What the caller adds for the next step \[N\].
+    /// Forces added by the caller for the next step \[N\].
     pub external: Vec<[f64; 3]>,
-    /// What a quiet face bears since the last state of rest \[N\].
+    /// Reactions of quiet faces since the last state of rest \[N\].
     pub borne: Vec<[f64; 3]>,
     /// Forces of stiffness damping in this step \[N\]; empty without.
     pub viscous: Vec<[f64; 3]>,
     /// Dashpots of quiet faces \[N s/m\].
     pub dashpot: Vec<[f64; 3]>,
-    /// The velocity that an axis is held at \[m/s\].
+    /// The velocity at which an axis is held \[m/s\].
     pub driven: Vec<[Option<f64>; 3]>,
-    /// Axes across a quiet face: held while a state of rest is sought.
+    /// Axes across a quiet face: held during the search for a state of rest.
     pub quiet: Vec<[bool; 3]>,
-    /// Where the chunks keep the forces of a node: chunk and node of the chunk, node after node.
+    /// The slots of the forces of a node in the chunks: chunk and node of the chunk, node after node.
     pub slots: Vec<(u32, u32)>,
-    /// First slot of each node, and one behind the last.
+    /// First slot of each node, and one final value.
     pub starts: Vec<u32>,
 }
 

@@ -1,5 +1,5 @@
-//! States of rest: `K u = f` by a sparse factorisation. Soil that yields gets there by steps of the elastic stiffness (Newton's method
-//! with one matrix), each as long as a secant along it says.
+//! States of rest: `K u = f` by a sparse factorisation. For soil that yields, the solution takes several steps with the
+//! elastic stiffness (Newton's method with one matrix); a secant along each step gives its length.
 
 use super::chunk::Answer;
 use super::error::SoilError;
@@ -10,20 +10,20 @@ use super::stiffness::{FREEDOMS, stiffness};
 use crate::linalg::sparse::{Analysis, Cholesky, FactorError, SparseSymmetric};
 use nalgebra::DMatrix;
 
-/// Iterations of a search for the rest of soil that yields.
+/// Largest number of iterations of a search for the rest of yielding soil.
 const ITERATIONS: usize = 400;
 
 /// The factored stiffness of a soil with its supports.
 #[derive(Debug, Clone)]
 pub struct Factor {
-    /// Unknown of each node and axis; `None` where it is held.
+    /// Unknown of each node and axis; `None` if it is held.
     unknowns: Vec<[Option<usize>; 3]>,
     order: usize,
     cholesky: Cholesky,
 }
 
 impl Factor {
-    /// Replaces forces on the nodes by the displacements that they cause, zero where the soil is held.
+    /// Replaces forces on the nodes by the displacements that they cause; held nodes have zero displacement.
     pub fn solve(&self, forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut side = vec![0.0; self.order];
         for (unknowns, force) in self.unknowns.iter().zip(forces) {
@@ -39,11 +39,13 @@ impl Factor {
 }
 
 impl Soil {
-    /// Puts the soil at rest, from where it is, under gravity and the forces added so far, which are spent by it; nodes may stand on springs to the
-    /// ground \[N/m\]. Quiet faces are rollers meanwhile, and go on bearing what they bore then. Driven nodes stand still where they are.
+    /// Finds the state of rest under gravity and the forces added so far, starting from the present state; the added
+    /// forces are used up. Nodes may stand on springs to the ground \[N/m\]. Quiet faces are rollers during the search,
+    /// and keep their reactions afterwards. Driven nodes stay at their present position.
     ///
     /// # Errors
-    /// Nothing holds the soil, it yields without end, or the factor does not fit into memory. The soil is then left as it was.
+    /// Nothing holds the soil, it yields without limit, or the factor does not fit into memory. The soil is then
+    /// unchanged.
     pub fn rest(&mut self, springs: &[(usize, [f64; 3])]) -> Result<(), SoilError> {
         let before = self.nodes.displacement.clone();
         let found = self.seek_rest(springs);
@@ -59,7 +61,7 @@ impl Soil {
         let largest = |forces: &[[f64; 3]], unknowns: &[[Option<usize>; 3]]| {
             let free =
                 forces.iter().zip(unknowns).flat_map(|(force, unknowns)| (0..3).map(|i| (force[i], unknowns[i])));
-            // what is no number is larger than any number
+            // a value that is not a number counts as larger than any number
             free.filter(|(_, unknown)| unknown.is_some())
                 .fold(0.0, |size: f64, (f, _)| if f.abs() <= size { size } else { f.abs() })
         };
@@ -76,7 +78,7 @@ impl Soil {
             left = self.go(&load, springs, &way, &left, plastic);
         }
         let worst = largest(&left, &factor.unknowns) / size.max(f64::MIN_POSITIVE);
-        // written so that what is no number fails; a soil that is free but for rounding balances nothing
+        // written so that a value that is not a number fails; for a soil held only by rounding the balance fails
         match worst <= 1e-6 {
             true => {}
             false if plastic => return Err(SoilError::NoRest { iterations: most, left: worst }),
@@ -87,7 +89,8 @@ impl Soil {
         Ok(())
     }
 
-    /// Goes along a way by as much as it takes to have no force along it, as a secant says, and returns what is unbalanced then.
+    /// Moves along a direction to the point at which the force along it is zero by a secant, and returns the unbalanced
+    /// forces there.
     fn go(
         &mut self,
         load: &[[f64; 3]],
@@ -117,7 +120,7 @@ impl Soil {
         self.unbalanced(load, springs)
     }
 
-    /// Ends a search for rest: what quiet faces bear is kept, forces are spent, nothing moves.
+    /// Ends a search for rest: stores the reactions of quiet faces, clears the added forces, sets velocities to zero.
     fn settle(&mut self, left: &[[f64; 3]]) {
         let nodes = &mut self.nodes;
         for (node, left) in left.iter().enumerate() {
@@ -180,14 +183,14 @@ impl Soil {
         Ok(Factor { unknowns, order, cholesky })
     }
 
-    /// Weight and the forces of the caller on each node \[N\].
+    /// Weight of each node and forces of the caller on it \[N\].
     fn load(&self) -> Vec<[f64; 3]> {
         let gravity = self.settings.gravity;
         let loads = self.nodes.mass.iter().zip(&self.nodes.external);
         loads.map(|(mass, external)| [0, 1, 2].map(|axis| mass * gravity[axis] + external[axis])).collect()
     }
 
-    /// What is left of a load at the present displacements \[N\].
+    /// Unbalanced part of a load at the present displacements \[N\].
     fn unbalanced(&mut self, load: &[[f64; 3]], springs: &[(usize, [f64; 3])]) -> Vec<[f64; 3]> {
         pull(&mut self.chunks, &self.shapes, &self.nodes.displacement, Answer::Tried);
         let mut left: Vec<[f64; 3]> = (0..load.len())

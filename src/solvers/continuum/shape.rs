@@ -1,10 +1,12 @@
-//! What elements of one shape and one material share: the mean gradient of a hexahedron, its hourglass patterns, its masses.
+//! Data shared by elements of one shape and one material: the mean gradient of a hexahedron, its hourglass patterns,
+//! its masses.
 //!
-//! The mean gradient `b = (1/V) ∫ ∇N dV` is exact (the integrand is a polynomial that two points an axis integrate), so that a
-//! linear field has its exact strain in any hexahedron. What the mean does not see are four patterns `γ`, bending and twisting
-//! among them (Flanagan and Belytschko 1981): `γ = (h - Σ (h·x) b) / 8` for the four patterns h = ηζ, ζξ, ξη, ξηζ. They
-//! are orthogonal to every linear field, so their stiffness spoils no patch test. Its size is the energy of bending and twisting
-//! of a block with the edges of the element, which the whole element would have without locking.
+//! The mean gradient `b = (1/V) ∫ ∇N dV` is exact (the integrand is a polynomial that two points per axis integrate),
+//! so that a linear field has its exact strain in any hexahedron. Four patterns `γ` have no mean strain, among them
+//! bending and twisting (Flanagan and Belytschko 1981): `γ = (h - Σ (h·x) b) / 8` for the four patterns h = ηζ, ζξ, ξη,
+//! ξηζ. They are orthogonal to every linear field, so their stiffness does not affect the patch test. This stiffness is
+//! the energy of bending and twisting of a block with the edges of the element, which a fully integrated element would
+//! have without locking.
 
 use super::lanes::Lanes;
 use super::material::Material;
@@ -15,14 +17,15 @@ use super::yields::Yield;
 /// Values at the corners of eight elements: axis by axis, corner by corner.
 pub type Corners = [[Lanes; 8]; 3];
 
-/// How an element feels.
+/// The formulation of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Formulation {
-    /// One mean strain with stiffness against hourglass patterns: exact for linear fields, free of volumetric locking, long steps.
+    /// One mean strain, with stiffness against hourglass patterns: exact for linear fields, no volumetric locking, long
+    /// steps.
     #[default]
     MeanStrain,
-    /// Two overlays of five tetrahedra of constant strain, whose volumetric strain is averaged over the overlay
-    /// (Marti and Cundall 1982). A step costs about twice as much.
+    /// Two overlays of five tetrahedra of constant strain; their volumetric strain is averaged over the overlay (Marti
+    /// and Cundall 1982). A step costs about twice as much.
     MixedDiscretisation,
 }
 
@@ -42,12 +45,12 @@ pub struct Shape {
     pub lambda: f64,
     pub mu: f64,
     pub yields: Option<Yield>,
-    /// In place of the mean strain.
+    /// Used instead of the mean strain.
     pub tetrahedra: Option<Box<Tetrahedra>>,
 }
 
 impl Shape {
-    /// The element between eight corners \[m\]; the volume of one that is turned inside out otherwise.
+    /// The element with eight corners \[m\]; the error is the volume of an element that is turned inside out.
     pub fn new(corners: &[[f64; 3]; 8], material: &Material, formulation: Formulation) -> Result<Shape, f64> {
         let mut shape = Shape {
             volume: 0.0,
@@ -97,7 +100,8 @@ impl Shape {
         let bending = 2.0 * self.mu / (1.0 - poisson);
         for axis in 0..3 {
             let (other, third) = ((axis + 1) % 3, (axis + 2) % 3);
-            // u_x = q ξη bends: strain q η 2/h, mean square 1/3; the shear that comes with it is the locking of a full element
+            // u_x = q ξη bends: strain q η 2/h, mean square 1/3; the shear of this displacement is the locking of a
+            // full element
             self.moduli[other][axis] = bending * stretch[axis] / 3.0;
             self.moduli[third][axis] = bending * stretch[axis] / 3.0;
             // u_x = q ηζ twists; two of three such displacements make one twist, which halves the energy of each
@@ -107,7 +111,8 @@ impl Shape {
     }
 }
 
-/// A point of an element: its Jacobian's determinant, the shape functions there, and the determinant times their gradients.
+/// A point of an element: the determinant of its Jacobian, the shape functions there, and the determinant times their
+/// gradients.
 struct Point {
     jacobian: f64,
     shares: [f64; 8],
@@ -119,7 +124,7 @@ impl Point {
         let factor = |c: &[f64; 3], axis: usize| 0.5 * (1.0 + c[axis] * place[axis]);
         let slope = |c: &[f64; 3], k: usize| 0.5 * c[k] * factor(c, (k + 1) % 3) * factor(c, (k + 2) % 3);
         let local = CORNERS.map(|c| [0, 1, 2].map(|k| slope(&c, k)));
-        // derivatives of the place along ξ, η, ζ
+        // derivatives of the position along ξ, η, ζ
         let along = |k: usize| [0, 1, 2].map(|axis| (0..8).map(|c| local[c][k] * corners[c][axis]).sum::<f64>());
         let [x, y, z] = [0, 1, 2].map(along);
         let cofactors = [cross(y, z), cross(z, x), cross(x, y)];

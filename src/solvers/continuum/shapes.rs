@@ -1,11 +1,11 @@
-//! Elements that are alike share their shape: most of a grid has a handful.
+//! Equal elements share their shape: most elements of a grid have one of a few shapes.
 
 use super::error::SoilError;
 use super::mesh::Mesh;
 use super::shape::{Formulation, Shape};
 use std::collections::HashMap;
 
-/// Edges that differ by less than this part of their size are equal: grid lines are rounded.
+/// Edges that differ by less than this share of their size are equal, because grid lines are rounded.
 const ALIKE: f64 = 1e-11;
 
 /// The shapes of a mesh, and the shape of each element.
@@ -15,7 +15,7 @@ pub fn shapes(mesh: &Mesh, formulation: Formulation) -> Result<(Vec<Shape>, Vec<
     for (number, element) in mesh.elements().iter().enumerate() {
         let corners = mesh.corners(number);
         let edges = corners.map(|corner| [0, 1, 2].map(|axis| corner[axis] - corners[0][axis]));
-        // a power of two near the size, so that rounded elements have it in common
+        // a power of two near the size, so that elements that differ by rounding have the same
         let size = edges.iter().flatten().fold(0.0f64, |size, x| size.max(x.abs()));
         let unit = ALIKE * size.log2().round().exp2();
         let key = edges.iter().flatten().map(|x| (x / unit).round() as i64).collect();

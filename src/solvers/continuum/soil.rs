@@ -1,4 +1,4 @@
-//! The soil: its elements, its nodes and what holds them.
+//! The soil: its elements, its nodes and their supports.
 
 use super::chunk::Chunk;
 use super::energy::{Energy, Ledger};
@@ -9,7 +9,7 @@ use super::shape::{Formulation, Shape};
 use super::shapes::shapes;
 use super::stiffness::fastest;
 
-/// How a soil is computed.
+/// Settings of the computation of a soil.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Settings {
     pub formulation: Formulation,
@@ -18,21 +18,21 @@ pub struct Settings {
     pub damping: Damping,
 }
 
-/// Losses besides those of plastic flow and quiet boundaries.
+/// Losses in addition to plastic flow and quiet boundaries.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Damping {
-    /// Time β \[s\]: damping forces are β times the stiffness times the velocity; a wave of frequency f has the damping ratio
-    /// π f β. It shortens the step.
+    /// Time β \[s\]: damping forces are β times stiffness times velocity; a wave of frequency f has the damping ratio π
+    /// f β. It shortens the stable step.
     pub stiffness: f64,
-    /// Local damping of Cundall, from 0 to below 1: the share of the unbalanced force of a node that acts against its velocity.
-    /// For states of rest; it slows down waves of every frequency and makes a falling body fall slowly.
+    /// Cundall's local damping, from 0 to below 1: the share of the unbalanced force of a node that acts against its
+    /// velocity. Use it for states of rest; it damps waves of all frequencies and slows down a falling body.
     pub local: f64,
 }
 
-/// Soil in motion: hexahedra of small strain, masses at the nodes, leapfrog in time.
+/// Soil in motion: hexahedra with small strains, masses at the nodes, leapfrog in time.
 ///
-/// Strains and rotations are small: forces act on the soil as it was made. Velocities stand half a step before positions once the
-/// first step is done.
+/// Strains and rotations are small: forces act on the undeformed soil. After the first step, velocities are half a step
+/// before positions.
 #[derive(Debug, Clone)]
 pub struct Soil {
     pub(super) mesh: Mesh,
@@ -50,20 +50,20 @@ pub struct Soil {
     pub(super) clock: Clock,
 }
 
-/// Where a soil stands in time.
+/// The time of a soil.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Clock {
     pub steps: u64,
     pub time: f64,
-    /// The last step \[s\]; 0 where velocities stand at the time of the positions.
+    /// The last step \[s\]; 0 if velocities belong to the time of the positions.
     pub last: f64,
 }
 
 impl Soil {
-    /// Unstressed soil that nothing holds.
+    /// Unstressed soil without supports.
     ///
     /// # Errors
-    /// Elements without volume, settings that cannot be.
+    /// Elements without volume, invalid settings.
     pub fn new(mesh: Mesh, settings: Settings) -> Result<Soil, SoilError> {
         settings.gravity.iter().try_for_each(|&g| number("gravity", g))?;
         let Damping { stiffness, local } = settings.damping;
@@ -92,12 +92,12 @@ impl Soil {
         &self.settings
     }
 
-    /// Where the nodes are \[m\].
+    /// Positions of the nodes \[m\].
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.nodes.position
     }
 
-    /// How far the nodes are from where they were made \[m\].
+    /// Displacements of the nodes from their initial positions \[m\].
     pub fn displacements(&self) -> &[[f64; 3]] {
         &self.nodes.displacement
     }
@@ -128,7 +128,7 @@ impl Soil {
         (0..3).for_each(|axis| sum[axis] += force[axis]);
     }
 
-    /// Puts a node at another displacement \[m\] and velocity \[m/s\]; its motion begins there.
+    /// Sets displacement \[m\] and velocity \[m/s\] of a node; its motion continues from there.
     pub fn set_motion(&mut self, node: usize, displacement: [f64; 3], velocity: [f64; 3]) {
         self.nodes.displacement[node] = displacement;
         self.nodes.velocity[node] = velocity;
@@ -140,19 +140,19 @@ impl Soil {
     /// Changes gravity \[m/s²\] from the next step on.
     ///
     /// # Errors
-    /// A component that is no number.
+    /// A component that is not a finite number.
     pub fn set_gravity(&mut self, gravity: [f64; 3]) -> Result<(), SoilError> {
         gravity.iter().try_for_each(|&g| number("gravity", g))?;
         self.settings.gravity = gravity;
         Ok(())
     }
 
-    /// Begins to keep account of energies from the next step on, or ends it. It costs a tenth of a step.
+    /// Starts or stops recording energies from the next step on. Recording costs a tenth of a step.
     pub fn watch(&mut self, on: bool) {
         self.ledger = Ledger::begin(on);
     }
 
-    /// The account; zeros where nothing is watched.
+    /// The energy account; zeros unless energies are recorded.
     pub fn energy(&self) -> Energy {
         self.ledger.now
     }

@@ -8,13 +8,14 @@ use super::shape::Shape;
 use super::soil::{Damping, Soil};
 use rayon::prelude::*;
 
-/// Nodes that a thread moves at a time.
+/// Nodes that one thread moves together.
 const NODES: usize = 1024;
 
-/// What a step needs besides nodes and elements.
+/// Data of a step besides nodes and elements.
 #[derive(Clone, Copy)]
 struct Kick {
-    /// This step and the one before it \[s\]; velocities go on by the mean of both, as they stand half a step before positions.
+    /// This step and the step before \[s\]; velocities advance by the mean of both, because they are half a step before
+    /// positions.
     dt: f64,
     last: f64,
     gravity: [f64; 3],
@@ -23,10 +24,10 @@ struct Kick {
 }
 
 impl Soil {
-    /// Does one step of `dt` \[s\] under the forces added since the last one, which are spent by it.
+    /// Does one step of `dt` \[s\] under the forces added since the last step; these forces are used up.
     ///
     /// # Errors
-    /// A step above the [`limit`](Soil::limit), or a motion that is no number any more.
+    /// A step above the [`limit`](Soil::limit), or a motion that is not a finite number.
     pub fn step(&mut self, dt: f64) -> Result<(), SoilError> {
         within("the time step of the soil", dt, dt > 0.0, "a time above 0")?;
         let limit = self.limit();
@@ -36,7 +37,7 @@ impl Soil {
         self.advance(dt)
     }
 
-    /// Does a step, whether it is stable or not.
+    /// Does a step without checking whether it is stable.
     pub(super) fn advance(&mut self, dt: f64) -> Result<(), SoilError> {
         let Damping { stiffness, local } = self.settings.damping;
         if stiffness > 0.0 {
@@ -72,7 +73,7 @@ pub(super) fn pull(chunks: &mut [Chunk], shapes: &[Shape], displacement: &[[f64;
 }
 
 fn advance(nodes: &mut Nodes, chunks: &[Chunk], made: &[[f64; 3]], kick: Kick) -> Tally {
-    // what moves leaves the nodes while the threads read the rest
+    // the forces are taken out of the nodes while the threads read the other data
     let take = std::mem::take::<Vec<[f64; 3]>>;
     let (mut displacement, mut velocity, mut position) =
         (take(&mut nodes.displacement), take(&mut nodes.velocity), take(&mut nodes.position));
@@ -114,7 +115,7 @@ impl Nodes {
             let load = pull[axis] + external[axis] + self.borne[node][axis] + weight;
             let total = load + viscous[axis];
             let damper = self.dashpot[node][axis];
-            // against the velocity in the middle of the kick, so that a node that turns round every step is damped too
+            // against the velocity in the middle of the kick, so that a node that reverses in every step is damped too
             let local = kick.local * total.abs() * sign(before[axis] + 0.5 * total / mass * time);
             let free =
                 ((mass - 0.5 * damper * time) * before[axis] + (total - local) * time) / (mass + 0.5 * damper * time);

@@ -1,4 +1,4 @@
-//! The stiffness of an element as a matrix, made by the same code that computes its forces.
+//! The stiffness of an element as a matrix, computed by the same code as its forces.
 
 use super::kernel;
 use super::lanes::{LANES, Lanes};
@@ -12,7 +12,7 @@ pub const FREEDOMS: usize = 24;
 pub fn stiffness(shape: &Shape) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(FREEDOMS, FREEDOMS);
     for axis in 0..3 {
-        // each lane moves another corner
+        // each lane moves a different corner
         let mut u: Corners = [[Lanes::ZERO; 8]; 3];
         (0..LANES).for_each(|l| u[axis][l].0[l] = 1.0);
         let mut force: Corners = [[Lanes::ZERO; 8]; 3];
@@ -22,7 +22,7 @@ pub fn stiffness(shape: &Shape) -> DMatrix<f64> {
             matrix[(3 * corner + along, 3 * moved + axis)] = -force[along][corner].0[moved];
         }
     }
-    // symmetric but for rounding
+    // symmetric except for rounding
     (&matrix + matrix.transpose()) * 0.5
 }
 

@@ -1,18 +1,18 @@
-//! The top of a grid of soil: facets with four corners, found by their place, and what a point between the corners makes of them.
+//! The top of a grid of soil: facets with four corners, search for a facet, and interpolation between the corners.
 
-/// A facet's corners, counterclockwise seen from above, beginning where x and y are smallest: numbers of nodes.
+/// The corners of a facet, counterclockwise seen from above, beginning at the smallest x and y: numbers of nodes.
 pub type Facet = [u32; 4];
 
-/// The uppermost faces of the columns of a grid. Steps between columns of unlike height have no facet.
+/// The uppermost faces of the columns of a grid. Steps between columns of different height have no facet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     lines: [Lines; 2],
     facets: Vec<Facet>,
-    /// Facet of each column, x after x; `None` where the column is empty.
+    /// Facet of each column, row by row along x; `None` if the column is empty.
     columns: Vec<Option<u32>>,
 }
 
-/// A place on the surface: its facet and where it lies between its lines, each -1 to 1.
+/// A place on the surface: its facet and its position between the lines of the facet, each -1 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spot {
     pub facet: usize,
@@ -45,15 +45,15 @@ impl Surface {
         (j < across).then(|| *self.columns.get(i * across + j)?).flatten().map(|facet| facet as usize)
     }
 
-    /// Columns of lines along x (0) or y (1) that a span \[m\] touches: the first and one behind the last.
+    /// Columns of lines along x (0) or y (1) that a span \[m\] touches: the first column and the last plus one.
     pub fn columns(&self, axis: usize, from: f64, to: f64) -> (usize, usize) {
         let lines = &self.lines[axis];
         let (first, last) = (lines.places[0], lines.places[lines.places.len() - 1]);
         if !(to >= first && from <= last) { (0, 0) } else { (lines.column(from), lines.column(to) + 1) }
     }
 
-    /// The facet at a place \[m\] of the soil as it was made; soil moves by little and keeps its facets there. A place on a line
-    /// belongs to the larger side.
+    /// The facet at a place \[m\] of the undeformed soil. Displacements are small, so the facets stay there. A place on
+    /// a line belongs to the larger side.
     pub fn locate(&self, x: f64, y: f64) -> Option<Spot> {
         let (i, first) = self.lines[0].locate(x)?;
         let (j, second) = self.lines[1].locate(y)?;
@@ -62,8 +62,8 @@ impl Surface {
 }
 
 impl Spot {
-    /// Share of each corner in a point of a facet: bilinear shape functions. They sum to 1; `Σ N x` is the point, `Σ N v` its
-    /// velocity, and `N F` at the corners has the force, the moment and the power of F there.
+    /// Weight of each corner at a point of a facet: bilinear shape functions. They sum to 1; `Σ N x` is the point,
+    /// `Σ N v` its velocity, and forces `N F` at the corners have the force, the moment and the power of F there.
     pub fn weights(local: [f64; 2]) -> [f64; 4] {
         let [x, y] = local;
         let [left, right, front, back] = [0.5 * (1.0 - x), 0.5 * (1.0 + x), 0.5 * (1.0 - y), 0.5 * (1.0 + y)];
@@ -71,7 +71,7 @@ impl Spot {
     }
 }
 
-/// Growing places along an axis, with the column of each of as many equal parts of the axis as there are columns.
+/// Increasing positions along an axis, and the column at each of as many equal parts of the axis as there are columns.
 #[derive(Debug, Clone, PartialEq)]
 struct Lines {
     places: Vec<f64>,
@@ -92,7 +92,7 @@ impl Lines {
         Lines { places, starts, parts_per_metre }
     }
 
-    /// The column of a place; the first or the last one where it lies outside.
+    /// The column of a position; the first or the last column if it lies outside.
     fn column(&self, place: f64) -> usize {
         let columns = self.starts.len();
         let part = ((place - self.places[0]) * self.parts_per_metre) as usize;
@@ -100,7 +100,7 @@ impl Lines {
         while column + 1 < columns && self.places[column + 1] <= place {
             column += 1;
         }
-        // the start of a part may be rounded up
+        // the start of a part may have been rounded up
         while column > 0 && self.places[column] > place {
             column -= 1;
         }

@@ -1,7 +1,8 @@
 //! The two overlays of five tetrahedra of a hexahedron (mixed discretisation).
 //!
-//! Each overlay has a tetrahedron at four corners that share no edge, and one in the middle. The volumetric part of the strain is
-//! averaged over an overlay by volume, the deviator stays with each tetrahedron; forces are the mean of both overlays.
+//! Each overlay has a tetrahedron at four corners that share no edge, and one in the middle. The volumetric part of the
+//! strain is averaged over an overlay by volume, the deviatoric part stays with each tetrahedron; forces are the mean
+//! of both overlays.
 
 /// Corners of the tetrahedra, overlay by overlay; positive volume.
 pub(super) const TETRAHEDRA: [[usize; 4]; 10] = [
@@ -27,7 +28,7 @@ pub struct Tetrahedra {
 }
 
 impl Tetrahedra {
-    /// The tetrahedra between eight corners \[m\]; the volume of one that is turned inside out otherwise.
+    /// The tetrahedra between eight corners \[m\]; the error is the volume of a tetrahedron that is turned inside out.
     pub fn new(corners: &[[f64; 3]; 8]) -> Result<Tetrahedra, f64> {
         let mut made = Tetrahedra { gradients: [[[0.0; 4]; 3]; 10], volumes: [0.0; 10] };
         for (at, tetrahedron) in TETRAHEDRA.iter().enumerate() {

@@ -1,13 +1,14 @@
-//! Mohr and Coulomb with a tension cut-off: the stress that a strain leaves.
+//! Mohr-Coulomb with a tension cut-off: the stress of a strain that yields.
 //!
-//! Tension is positive, principal stresses are σ1 ≥ σ2 ≥ σ3. Shear yields where `σ1 - σ3 + (σ1 + σ3) sin φ = 2 c cos φ`, tension where
-//! σ1 reaches the limit; the flow of shear has the dilation angle ψ in place of φ, the flow of tension is associated. In principal
-//! stresses each is a plane, so the return along the flow is exact in one go once the planes that act are known: one on a plane,
-//! two on an edge, three at a corner (Koiter 1953; Clausen, Damkilde and Andersen 2006). They are found by trying.
+//! Tension is positive, principal stresses are σ1 ≥ σ2 ≥ σ3. Shear yields at `σ1 - σ3 + (σ1 + σ3) sin φ = 2 c cos φ`,
+//! tension yields at the limit of σ1. The shear flow has the dilation angle ψ instead of φ, the tension flow is
+//! associated. In principal stresses each yield surface is a plane, so the return along the flow is exact in one step
+//! if the active planes are known: one on a plane, two on an edge, three at a corner (Koiter 1953; Clausen, Damkilde
+//! and Andersen 2006). They are found by trial.
 
 use super::material::Strength;
 
-/// A plane of yield in principal stresses: `normal · σ = limit`; the flow goes along `flow`.
+/// A yield plane in principal stresses: `normal · σ = limit`; the flow is along `flow`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Plane {
     normal: [f64; 3],
@@ -15,7 +16,7 @@ struct Plane {
     limit: f64,
 }
 
-/// Strength with its elastic constants, ready for use.
+/// Strength with its elastic constants, prepared for use.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Yield {
     lambda: f64,
@@ -24,14 +25,16 @@ pub struct Yield {
     reach: f64,
     tension: f64,
     planes: [Plane; 6],
-    /// Pushes of the planes: stress that a unit of flow takes away.
+    /// Stress reduction of each plane per unit of flow.
     pushes: [[f64; 3]; 6],
 }
 
-/// Pairs of principal stresses whose shear can yield: the largest circle, then those of two edges; then tension.
+/// Pairs of principal stresses whose shear can yield: the largest circle, then the circles of the two edges; then
+/// tension.
 const PAIRS: [[usize; 2]; 3] = [[0, 2], [1, 2], [0, 1]];
 
-/// Sets of planes that can act together, those that are met most first. Shear is numbered as the pairs, tension 3, 4, 5.
+/// Sets of planes that can be active together, the most frequent first. Shear is numbered like the pairs, tension 3, 4,
+/// 5.
 const SETS: [&[usize]; 16] = [
     &[0],
     &[3],
@@ -56,7 +59,7 @@ impl Yield {
         let Strength { cohesion, friction_angle, dilation_angle, tension } = *strength;
         let (sine, dilation) = (friction_angle.sin(), dilation_angle.sin());
         let reach = 2.0 * cohesion * friction_angle.cos();
-        // no tension is carried beyond the tip of the cone
+        // no tension beyond the apex of the cone
         let tip = if sine > 0.0 { cohesion / friction_angle.tan() } else { f64::INFINITY };
         let tension = tension.min(tip);
         let mut planes = [Plane { normal: [0.0; 3], flow: [0.0; 3], limit: 0.0 }; 6];
@@ -81,7 +84,7 @@ impl Yield {
         Yield { lambda, mu, sine, reach, tension, planes, pushes }
     }
 
-    /// The stress of a trial stress (xx, yy, zz, xy, yz, zx) that yields; `None` where it does not.
+    /// The stress after yielding for a trial stress (xx, yy, zz, xy, yz, zx); `None` if it does not yield.
     #[inline]
     pub fn correct(&self, trial: &[f64; 6]) -> Option<[f64; 6]> {
         if self.surely_elastic(trial) {
@@ -107,7 +110,7 @@ impl Yield {
             && mean + 2.0 * third * deviator < self.tension
     }
 
-    /// Return of principal stresses, largest first; `None` where nothing yields.
+    /// Return of principal stresses, largest first; `None` without yielding.
     pub fn correct_principal(&self, trial: [f64; 3]) -> Option<[f64; 3]> {
         let size = trial.iter().fold(self.reach, |size, s| size.max(s.abs()));
         let rounding = 1e-12 * size;
@@ -132,7 +135,7 @@ impl Yield {
         Some(best)
     }
 
-    /// The stress on some planes; `None` where one of them would have to pull.
+    /// The stress on some planes; `None` if the flow of a plane would be negative.
     fn on(&self, set: &[usize], trial: &[f64; 3]) -> Option<[f64; 3]> {
         if set.iter().any(|&plane| self.planes[plane].limit.is_infinite()) {
             return None;
@@ -158,7 +161,7 @@ impl Yield {
         Some(stress)
     }
 
-    /// Strain (of the tensor) that an elastic material has under a stress.
+    /// Strain (tensor components) of an elastic material under a stress.
     #[inline]
     pub fn strain(&self, stress: &[f64; 6]) -> [f64; 6] {
         let trace = stress[0] + stress[1] + stress[2];
@@ -169,7 +172,7 @@ impl Yield {
     }
 }
 
-/// Solves up to three equations with the right-hand side in the last column; `None` where they do not determine a solution.
+/// Solves up to three equations with the right-hand side in the last column; `None` if the solution is not unique.
 fn solve(matrix: &mut [[f64; 4]; 3], count: usize) -> Option<[f64; 3]> {
     let size = matrix[..count].iter().flat_map(|row| &row[..count]).fold(0.0f64, |m, a| m.max(a.abs()));
     for column in 0..count {
@@ -192,7 +195,7 @@ fn solve(matrix: &mut [[f64; 4]; 3], count: usize) -> Option<[f64; 3]> {
     Some(found)
 }
 
-/// Principal values of a symmetric tensor, largest first, and their axes, by rotations of Jacobi.
+/// Principal values of a symmetric tensor, largest first, and their axes, by Jacobi rotations.
 pub fn principal(tensor: &[f64; 6]) -> ([f64; 3], [[f64; 3]; 3]) {
     let [xx, yy, zz, xy, yz, zx] = *tensor;
     let mut a = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];

@@ -1,21 +1,21 @@
-//! The load spreads downwards in a truncated pyramid, and each slice of it is a spring.
+//! The load spreads downwards in a truncated pyramid; each slice of the pyramid is a spring.
 //!
 //! At depth z the load acts on a rectangle `w(z) l(z)`, w along and l across the track. Each side moves outwards by
-//! `tan(a)` per metre of depth, until it meets the pyramid of its neighbour: halfway to the next sleeper, or at the track's
-//! centre line. From there on it stays where it is. A slice dz is a spring `E w l / dz`, all in series:
+//! `tan(a)` per metre of depth, until it meets the pyramid of its neighbour: halfway to the next sleeper, or at the
+//! centre line of the track. Below that depth the side is vertical. A slice dz is a spring `E w l / dz`, all in series:
 //!
 //! ```text
 //! 1 / k = int dz / (E w l)
 //! ```
 //!
 //! W. M. Zhai, K. Y. Wang and J. H. Lin, Modelling and experiment of railway ballast vibrations, Journal of Sound and
-//! Vibration 270 (2004) 673-683, take one layer of ballast on springs. Their formula takes the mean width in the part that
-//! is shared where the integral is exact here (0.3 % of the stiffness of their own example).
+//! Vibration 270 (2004) 673-683, use one layer of ballast on springs. In the part shared by neighbours their formula
+//! uses the mean width; the integral here is exact (the difference is 0.3 % of the stiffness in their example).
 
 use super::layers::{Bearing, Below, Layer, Support};
 use std::f64::consts::PI;
 
-/// The rectangle on which the load acts at some depth.
+/// The rectangle on which the load acts at one depth.
 #[derive(Debug, Clone, Copy)]
 struct Slice {
     /// From the axis of the load to the left and to the right side, m.
@@ -38,7 +38,7 @@ impl Slice {
     }
 }
 
-/// How far each side may move: to the left, right, inner and outer neighbour; there is none beyond the outer end.
+/// Largest displacement of each side: to the left, right, inner and outer neighbour; no limit beyond the outer end.
 struct Limits([f64; 4]);
 
 impl Limits {
@@ -48,7 +48,7 @@ impl Limits {
         Limits([0.5 * left, 0.5 * right, inner, f64::INFINITY])
     }
 
-    /// The slice h below another, where the load spreads by `rate` per metre.
+    /// The slice h below another slice, for a load that spreads by `rate` per metre.
     fn below(&self, slice: &Slice, rate: f64, h: f64) -> Slice {
         let [left, right, inner, outer] = self.0;
         let moved = |side: f64, limit: f64| (side + rate * h).min(limit.max(side));
@@ -58,7 +58,7 @@ impl Limits {
         }
     }
 
-    /// Depths below a slice at which a side meets its neighbour's, ascending, with the end of the layer.
+    /// Depths below a slice at which a side meets the side of its neighbour, ascending, with the end of the layer.
     fn stops(&self, slice: &Slice, rate: f64, thickness: f64) -> Vec<f64> {
         let sides = [slice.along[0], slice.along[1], slice.across[0], slice.across[1]];
         let meets = sides.iter().zip(self.0).map(|(side, limit)| (limit - side) / rate);
@@ -88,7 +88,7 @@ pub(super) fn support(bearing: &Bearing, layers: &[Layer], below: Below) -> Supp
     compliance += match below {
         Below::Rigid => 0.0,
         Below::Springs { modulus } => 1.0 / (modulus * slice.area()),
-        // a stiff disc of the same area: 2 E r / (1 - nu^2)
+        // a rigid disc of the same area: 2 E r / (1 - nu^2)
         Below::HalfSpace { youngs_modulus, poisson_ratio } => {
             (1.0 - poisson_ratio * poisson_ratio) / (2.0 * youngs_modulus * (slice.area() / PI).sqrt())
         }
@@ -102,7 +102,7 @@ pub(super) fn support(bearing: &Bearing, layers: &[Layer], below: Below) -> Supp
 fn flattening(top: &Slice, bottom: &Slice, h: f64) -> f64 {
     let (crossed, straight) = (top.width() * bottom.length(), bottom.width() * top.length());
     let q = (straight - crossed) / crossed;
-    // the first terms of the series where w and l grow alike
+    // the first terms of the series if w and l grow alike
     let ratio = if q.abs() < 1e-6 { 1.0 - 0.5 * q } else { q.ln_1p() / q };
     h / crossed * ratio
 }

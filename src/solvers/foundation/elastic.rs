@@ -1,15 +1,16 @@
 //! Half a sleeper as a uniform pressure on a rectangle, on bonded elastic layers, with its neighbours beside it.
 //!
-//! The mean settlement of a rectangle of sides a and b is an integral over all waves k of its load,
+//! The mean settlement of a rectangle of sides a and b is an integral over all wave numbers k of its load,
 //!
 //! ```text
 //! F / (2 pi) int f(k) R(k) dk,   R(k) = (2 / pi) int_0^(pi/2) (sinc(kx a/2) sinc(ky b/2))^2 P(kx, ky) da
 //! ```
 //!
-//! where f is the [`Kernel`]'s settlement, `kx = k cos a`, `ky = k sin a`, and P adds a cosine for each neighbour. What a
-//! half-space of the first layer's material would do has a closed form, see [`super::rectangle`]; only the difference to
-//! it is integrated, and that dies out as `exp(-2 k h)` with the first layer's thickness h. A stiff sleeper settles less
-//! than the mean of a uniform pressure: by 7 % on a half-space, nothing on a thin layer.
+//! Here f is the settlement by the [`Kernel`], `kx = k cos a`, `ky = k sin a`, and P adds a cosine for each neighbour.
+//! The settlement of a half-space with the material of the first layer has a closed form, see [`super::rectangle`].
+//! Only the difference to it is integrated; the difference decays as `exp(-2 k h)` with the thickness h of the first
+//! layer. A stiff sleeper settles less than the mean of a uniform pressure: 7 % less on a half-space, equally on a thin
+//! layer.
 
 use super::kernel::Kernel;
 use super::layers::{Bearing, Below, Layer, Support};
@@ -18,14 +19,16 @@ use super::sine::{LANES, sine};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::iter;
 
-/// Waves shorter than this over the first layer's thickness are not felt below it: the pressure there by less than 1e-4 of
-/// itself, settlement by 1e-10.
+/// Wave number times thickness of the first layer above which waves have no effect below it: less than 1e-4 of the
+/// pressure there, and 1e-10 of the settlement.
 const SHORTEST: f64 = 12.0;
-/// Nor do those matter that go so often into the shorter side, however thin the first layer is.
+/// Upper limit of wave number times the shorter side; shorter waves have no effect for any thickness of the first
+/// layer.
 const FINEST: f64 = 200.0;
-/// The longest panel of the integral, times the way over which waves of the plan meet: what its nodes follow to 1e-9.
+/// Largest panel of the integral, times the distance over which waves of the plan interfere: its nodes integrate to
+/// 1e-9.
 const PANEL: f64 = 24.0;
-/// Nodes and weights of Gauss and Legendre on -1 .. 1, the positive half of sixteen.
+/// Gauss-Legendre nodes and weights on -1 .. 1, the positive half of sixteen.
 const NODES: [[f64; 2]; 8] = [
     [0.095_012_509_837_637_44, 0.189_450_610_455_068_5],
     [0.281_603_550_779_258_9, 0.182_603_415_044_923_6],
@@ -37,11 +40,11 @@ const NODES: [[f64; 2]; 8] = [
     [0.989_400_934_991_649_9, 0.027_152_459_411_754_1],
 ];
 
-/// What is loaded: rectangles in rows along the track, equal rows across it.
+/// The loaded area: rectangles in rows along the track, equal rows across the track.
 struct Plan {
     /// Along and across the track, m.
     sides: [f64; 2],
-    /// Distances to the neighbours along, m, and their load over that of the one that is asked for.
+    /// Distances to the neighbours along the track, m, and their load divided by the load of this sleeper.
     spacings: [f64; 2],
     share: f64,
     /// Distance to the row of the other half sleeper, m.
@@ -58,13 +61,13 @@ impl Plan {
         }
     }
 
-    /// The longest way over which their waves meet, m: from corner to corner of the plan.
+    /// The longest distance over which their waves interfere, m: from corner to corner of the plan.
     fn reach(&self) -> f64 {
         let along = if self.share > 0.0 { self.spacings[0].max(self.spacings[1]) } else { 0.0 };
         f64::hypot(along + self.sides[0], self.across.unwrap_or(0.0) + self.sides[1])
     }
 
-    /// Settlement of a half-space under all of them, m/N.
+    /// Settlement of a half-space under all rectangles, m/N.
     fn endless(&self, youngs_modulus: f64, poisson_ratio: f64) -> f64 {
         let one = |x: f64, y: f64| mean_settlement(self.sides, [x, y], youngs_modulus, poisson_ratio);
         let [left, right] = self.spacings;
@@ -72,10 +75,10 @@ impl Plan {
         row(0.0) + self.across.map_or(0.0, row)
     }
 
-    /// Averages over all directions of a wave: of the load seen by the mean of the rectangle, and by its middle. The midpoint
-    /// rule over a period converges faster than any power once it resolves the plan.
+    /// Averages over all directions of a wave: the effect of the load on the mean of the rectangle, and on its middle.
+    /// The midpoint rule over a period converges faster than any power once it resolves the plan.
     fn averages(&self, k: f64, reach: f64) -> [f64; 2] {
-        // a quarter for each radian resolves it, a fifth more makes the rest of no account
+        // a quarter for each radian resolves it; a fifth more makes the error negligible
         let rounds = 1 + (0.3 * k * reach / LANES as f64).ceil() as usize;
         let points = (rounds * LANES) as f64;
         let [a, b] = self.sides.map(|side| 0.5 * k * side);
@@ -98,7 +101,7 @@ impl Plan {
     }
 }
 
-/// The support, with the waves of stacks before, which may serve again.
+/// The support; `waves` are the waves of earlier stacks, which are reused if possible.
 pub(super) fn support(
     bearing: &Bearing,
     layers: &[Layer],
@@ -106,7 +109,7 @@ pub(super) fn support(
     neighbours: f64,
     known: &mut Vec<Waves>,
 ) -> Support {
-    // a layer that has run out is not there; its bottom lies where that of the one above does
+    // a layer of thickness zero is left out; its bottom is the bottom of the layer above
     let solid: Vec<Layer> = layers.iter().filter(|layer| layer.thickness > 0.0).copied().collect();
     let plan = Plan::new(bearing, neighbours);
     let (top, depth) = (solid[0], solid.iter().map(|layer| layer.thickness).sum());
@@ -130,20 +133,20 @@ pub(super) fn support(
     Support { stiffness: 1.0 / compliance, masses: Vec::new(), pressures }
 }
 
-/// Where the panels of the integral over k end, 1/m: short where the depth of the whole is felt, later as long as the plan of
-/// the load allows.
+/// Ends of the panels of the integral over k, 1/m: short while the total depth has an effect, later as long as the plan
+/// of the load allows.
 ///
-/// Depth counts in powers of two and the last panel is whole, so that stacks that differ a little have the same.
+/// The depth is rounded to a power of two and the last panel is complete, so that similar stacks have the same panels.
 fn panels(plan: &Plan, first: f64, depth: f64) -> Vec<f64> {
     let reach = plan.reach();
     let last = (SHORTEST / first).min(FINEST / plan.sides[0].min(plan.sides[1]));
-    // a stiff plate on soft ground is felt several times as far away as it is thick
+    // a stiff plate on soft ground acts over several times its thickness
     let shortest = 0.25 / depth.log2().ceil().exp2().max(reach);
     let end = |from: f64| from + (3.0 * from).clamp(shortest, PANEL / reach);
     iter::successors(Some(end(0.0)), |from| (*from < last).then(|| end(*from))).collect()
 }
 
-/// What the plan of the load makes of the waves that are integrated over: the same for every stack with the same panels, and
+/// The effect of the plan of the load for the waves of the integral: the same for every stack with the same panels, and
 /// most of the work.
 pub(super) struct Waves {
     panels: Vec<f64>,
@@ -178,8 +181,8 @@ impl Waves {
     }
 }
 
-/// Settlement beyond that of the first layer's half-space, m/N, and pressure below the axis at the bottom of each layer,
-/// 1/m^2, for each newton of load.
+/// Settlement in addition to the half-space of the first layer, m/N, and pressure below the axis at the bottom of each
+/// layer, 1/m^2, per newton of load.
 fn integrals(waves: &[Wave], layers: &[Layer], below: Below) -> (f64, Vec<f64>) {
     let top = layers[0];
     let endless = 2.0 * (1.0 - top.poisson_ratio * top.poisson_ratio) / top.youngs_modulus;

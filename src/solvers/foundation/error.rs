@@ -1,24 +1,25 @@
-//! What can be wrong with a stack of layers.
+//! Errors in a stack of layers.
 
 use super::layers::{Bearing, Below, Layer, Method};
 use std::fmt;
 
-/// A load spreads by less than this, rad; only stiff plates come near it.
+/// Upper limit of the spread angle of a load, rad; only stiff plates come near it.
 const WIDEST: f64 = std::f64::consts::FRAC_PI_2;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FoundationError {
-    /// Nothing lies between the sleeper and what is below.
+    /// There is no layer between the sleeper and the ground below.
     NoLayers,
-    /// A value that must be positive is not; `layer` counts from the sleeper down, from 0, `None` is not of a layer.
+    /// A value is not positive; `layer` counts from the sleeper down, from 0; `None` if the value does not belong to a
+    /// layer.
     NotPositive { what: &'static str, layer: Option<usize>, value: f64 },
-    /// The angle at which a layer spreads the load, rad, is not in 0 .. 90 degrees, the end left out.
+    /// The spread angle of the load in a layer, rad, is not from 0 to below 90 degrees.
     Spread { layer: usize, value: f64 },
-    /// Poisson's ratio is not in 0 .. 0.5, the end left out; `None` is the ground below.
+    /// Poisson's ratio is not from 0 to below 0.5; `None` is the ground below.
     PoissonRatio { layer: Option<usize>, value: f64 },
-    /// Sleepers that lie on each other: a spacing, m, below the width of the base.
+    /// Sleepers overlap: a spacing, m, is below the width of the base.
     Spacing { value: f64, width: f64 },
-    /// The neighbours' share of the load is not in 0 .. 1.
+    /// The load share of the neighbours is not from 0 to 1.
     Neighbours { value: f64 },
 }
 
@@ -35,7 +36,7 @@ impl fmt::Display for FoundationError {
             }
             FoundationError::Spread { layer, value } => write!(
                 f,
-                "expected the load to spread at 0 to below 90 degrees in layer {}, found {}",
+                "expected a load spread angle from 0 to below 90 degrees in layer {}, found {}",
                 layer + 1,
                 value.to_degrees()
             ),
@@ -43,10 +44,10 @@ impl fmt::Display for FoundationError {
                 write!(f, "expected a Poisson's ratio{} from 0 to below 0.5, found {value}", of(layer))
             }
             FoundationError::Spacing { value, width } => {
-                write!(f, "expected sleepers at least their width of {width} m apart, found {value} m")
+                write!(f, "expected a sleeper spacing of at least the sleeper width, {width} m, found {value} m")
             }
             FoundationError::Neighbours { value } => {
-                write!(f, "expected neighbours that bear 0 .. 1 of the load, found {value}")
+                write!(f, "expected a load share of the neighbours from 0 to 1, found {value}")
             }
         }
     }

@@ -1,7 +1,7 @@
-//! Bonded elastic layers under a pressure that waves along their surface.
+//! Bonded elastic layers under a pressure that varies as a wave along their surface.
 //!
-//! A load of any plan is a sum of waves, and under a wave of number k every displacement and stress waves too, as a sum of
-//! four parts in each layer. With z downwards, the shear modulus G and Poisson's ratio n, the amplitudes
+//! A load on any area is a sum of waves. Under a wave of wave number k all displacements and stresses are waves too; in
+//! each layer they are a sum of four parts. With z downwards, the shear modulus G and Poisson's ratio n, the amplitudes
 //! `(u, w, t / k, s / k)` of horizontal and vertical displacement, shear and normal stress on level planes are
 //!
 //! ```text
@@ -9,19 +9,19 @@
 //!                                         q = (0, 3 - 4 n, -2 G (1 - 2 n), -4 G (1 - n))
 //! ```
 //!
-//! and their mirror images, which come up from below: there w and t have the other sign. Going up through the layers, the
-//! compliance `(u, w) = C (t, s)` of all that lies below is carried along. It says what comes up for what goes down; only
-//! decaying exponentials appear, so that no layer is too thick.
+//! and their mirror images, which come up from below: in these, w and t have the opposite sign. Going up through the
+//! layers, the compliance `(u, w) = C (t, s)` of everything below is updated. It gives the upward parts from the
+//! downward parts. Only decaying exponentials occur, so any thickness of a layer is possible.
 
 use super::layers::{Below, Layer};
 use nalgebra::{Matrix2, Vector2};
 
 type Pair = Matrix2<f64>;
 
-/// Below this depth, times k, nothing is felt: exp(-30) is 1e-13.
+/// Depth times k below which nothing has an effect: exp(-30) is 1e-13.
 const DEEP: f64 = 30.0;
 
-/// A layer, ready for any wave number.
+/// A layer, prepared for any wave number.
 struct Sheet {
     thickness: f64,
     /// Compliance of a half-space of its material.
@@ -44,11 +44,11 @@ impl Kernel {
         Kernel { sheets: layers.iter().map(Sheet::new).collect(), below }
     }
 
-    /// Amplitude of the surface's settlement times k under a wave of pressure of amplitude 1, 1/Pa.
+    /// Amplitude of the settlement of the surface times k under a pressure wave of amplitude 1, 1/Pa.
     pub fn settlement(&mut self, k: f64) -> f64 {
         let mut compliance = match self.below {
             Below::Rigid => Pair::zeros(),
-            // they hold against sliding as they do against pressure
+            // the same stiffness against sliding and against pressure
             Below::Springs { modulus } => Pair::identity() * (-k / modulus),
             Below::HalfSpace { youngs_modulus, poisson_ratio } => endless(youngs_modulus, poisson_ratio),
         };
@@ -81,7 +81,7 @@ impl Sheet {
         }
     }
 
-    /// Compliance at the top of the layer from that at its bottom.
+    /// Compliance at the top of the layer from the compliance at its bottom.
     fn above(&mut self, k: f64, below: &Pair) -> Pair {
         let depth = k * self.thickness;
         if depth > DEEP {
@@ -107,7 +107,7 @@ fn endless(e: f64, nu: f64) -> Pair {
     Pair::new(own, cross, cross, own)
 }
 
-/// With the second row turned round.
+/// With the sign of the second row changed.
 fn mirrored(m: &Pair) -> Pair {
     Pair::new(m.m11, m.m12, -m.m21, -m.m22)
 }
@@ -124,8 +124,8 @@ mod tests {
         Layer { thickness, youngs_modulus, poisson_ratio, density: 2e3, spread: 0.5 }
     }
 
-    /// The settlement of a layer on a rough rigid base (Vorovich, Aleksandrov and Babeshko 1974): with n = 3 - 4 nu and x = k h,
-    /// `2 (1 - nu^2) / E (2 n sinh 2x - 4x) / (2 n cosh 2x + 1 + n^2 + 4 x^2)`.
+    /// The settlement of a layer on a rough rigid base (Vorovich, Aleksandrov and Babeshko 1974): with n = 3 - 4 nu and
+    /// x = k h, `2 (1 - nu^2) / E (2 n sinh 2x - 4x) / (2 n cosh 2x + 1 + n^2 + 4 x^2)`.
     fn on_rock(e: f64, nu: f64, x: f64) -> f64 {
         let n = 3.0 - 4.0 * nu;
         let above = 2.0 * n * (2.0 * x).sinh() - 4.0 * x;
@@ -151,7 +151,7 @@ mod tests {
         for k in [0.05, 0.2, 0.5] {
             let found = Kernel::new(&[layer(h, e, nu)], Below::Springs { modulus }).settlement(k) / k;
             let exact = 1.0 / (modulus + plate * f64::powi(k, 4));
-            // a plate is thin: what it leaves out is of the order (k h)^2
+            // the plate theory is for thin plates: its error is of the order (k h)^2
             assert!((found / exact - 1.0).abs() < 2.0 * (k * h).powi(2) + 1e-3, "k {k}: {found} against {exact}");
         }
     }

@@ -1,9 +1,9 @@
-//! What layers of ballast and soil make of the support of one rail seat: half a sleeper presses on a stack of layers.
+//! The support of one rail seat from layers of ballast and soil: half a sleeper presses on a stack of layers.
 //!
-//! Two methods answer the same question. The [stress cone](Method::StressCone) is the engineer's: the load spreads at an
-//! angle, cones of neighbours share what lies below their meeting. The [layered
-//! elastic](Method::LayeredElastic) one solves the equations of elasticity for a rectangle on bonded layers. Neither knows
-//! tension, wear or water; both give a stiffness that stays the same under any load.
+//! There are two methods. The [stress cone](Method::StressCone) is an engineering method: the load spreads at an angle,
+//! and cones of neighbours share the ground below their intersection. The [layered elastic](Method::LayeredElastic)
+//! method solves the equations of elasticity for a rectangle on bonded layers. Neither method includes loss of contact
+//! in tension, wear or water; both give a stiffness that is independent of the load.
 
 mod cone;
 mod elastic;
@@ -18,16 +18,17 @@ mod tests;
 pub use error::FoundationError;
 pub use layers::{Bearing, Below, Layer, Method, Support};
 
-/// The support that layers, from the sleeper down, give to one seat.
+/// The support of one seat by layers, given from the sleeper down.
 ///
 /// # Errors
-/// A length, modulus or density that is not positive, an angle or Poisson's ratio out of its range, or no layer at all.
+/// A length, modulus or density that is not positive, an angle or Poisson's ratio out of its range, or no layer.
 pub fn support(bearing: &Bearing, layers: &[Layer], below: Below, method: Method) -> Result<Support, FoundationError> {
     Footing::new(*bearing, method).support(layers, below)
 }
 
-/// A bearing that is asked for its support on one stack after the other: what is the same for stacks of about the same
-/// thickness is worked out once, which is most of the elastic method. No answer depends on those before.
+/// A bearing area for which the supports on several stacks are computed. Data that are equal for stacks of about the
+/// same thickness are computed once; they are most of the work of the elastic method. No result depends on earlier
+/// results.
 pub struct Footing {
     bearing: Bearing,
     method: Method,
@@ -39,10 +40,10 @@ impl Footing {
         Footing { bearing, method, waves: Vec::new() }
     }
 
-    /// The same as [`support`] gives.
+    /// The same result as [`support`].
     ///
     /// # Errors
-    /// The same as there.
+    /// The same errors as [`support`].
     pub fn support(&mut self, layers: &[Layer], below: Below) -> Result<Support, FoundationError> {
         let Footing { bearing, method, waves } = self;
         error::check(bearing, layers, below, *method)?;

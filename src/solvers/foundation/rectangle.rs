@@ -1,9 +1,9 @@
-//! The settlement that uniform pressure on a rectangle makes of a homogeneous half-space, in closed form.
+//! The settlement of a homogeneous half-space by uniform pressure on a rectangle, in closed form.
 
-/// Mean of `1 / r` between two equal rectangles, times one's area, m: sides a and b, centres `(x, y)` apart.
+/// Mean of `1 / r` between two equal rectangles, times the area of one, m: sides a and b, centres `(x, y)` apart.
 ///
 /// With `G = x^2 y/2 asinh(y/|x|) + x y^2/2 asinh(x/|y|) - r^3/6`, whose fourth mixed derivative `G_xxyy` is `1/r`, the
-/// fourfold integral is the second difference of G in both directions. For a rectangle and itself that is
+/// fourfold integral is the second difference of G in both directions. For a rectangle with itself it is
 /// `2 a asinh(b/a) + 2 b asinh(a/b) - 2/3 ((a^2 + b^2)^(3/2) - a^3 - b^3) / (a b)`.
 pub(super) fn mean_inverse_distance([a, b]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
     let second = [(-1.0, 1.0), (0.0, -2.0), (1.0, 1.0)];
@@ -20,7 +20,7 @@ fn antiderivative(x: f64, y: f64) -> f64 {
     part(x, y) + part(y, x) - r * r * r / 6.0
 }
 
-/// Mean settlement under one of two equal rectangles for each newton on the other, m/N.
+/// Mean settlement under one of two equal rectangles per newton on the other, m/N.
 pub(super) fn mean_settlement(sides: [f64; 2], apart: [f64; 2], youngs_modulus: f64, poisson_ratio: f64) -> f64 {
     let [a, b] = sides;
     let compliance = (1.0 - poisson_ratio * poisson_ratio) / (std::f64::consts::PI * youngs_modulus);

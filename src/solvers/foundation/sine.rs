@@ -1,14 +1,15 @@
-//! A sine that compilers put into vectors: arithmetic alone, without a branch.
+//! A sine that compilers vectorise: arithmetic alone, without a branch.
 
 use std::f64::consts::{FRAC_1_PI, PI};
 
-/// Directions that are worked on side by side.
+/// Directions that are computed together.
 pub(super) const LANES: usize = 8;
 
-/// Added to a small number, it rounds it to a whole one, the last bit of the sum saying whether that is odd.
+/// Added to a small number, it rounds the number to an integer; the last bit of the sum shows whether the integer is
+/// odd.
 const ROUNDING: f64 = 1.5 * (1u64 << 52) as f64;
 
-/// 1 / (2 n + 1)! with its sign, from the last: the rest is 3e-16 at pi / 2.
+/// 1 / (2 n + 1)! with its sign, from the last term: the remainder is 3e-16 at pi / 2.
 const SERIES: [f64; 10] = series();
 
 const fn series() -> [f64; 10] {

@@ -11,7 +11,7 @@ fn sleeper() -> Bearing {
     Bearing { width: 0.3, length: 0.95, spacings: [0.6; 2], to_centre: Some(0.275) }
 }
 
-/// The same without its other half.
+/// The same without the other half of the sleeper.
 fn half() -> Bearing {
     Bearing { to_centre: None, ..sleeper() }
 }
@@ -73,7 +73,7 @@ fn flexible_rectangles_settle_as_tabulated() {
     for (n, factor) in [(1.0, 0.946), (2.0, 1.300), (5.0, 1.826), (10.0, 2.246)] {
         near(mean_settlement([0.3, 0.3 * n], [0.0; 2], 1e8, 0.0) * 1e8 * 0.3 * n, factor, 6e-4);
     }
-    // far away a rectangle is a point: (1 - nu^2) / (pi E r)
+    // at a large distance a rectangle acts like a point: (1 - nu^2) / (pi E r)
     near(mean_settlement([0.3, 0.9], [30.0, 40.0], 1e8, 0.3), 0.91 / (std::f64::consts::PI * 1e8 * 50.0), 1e-4);
 }
 
@@ -100,7 +100,7 @@ fn a_thin_layer_on_rock_is_an_oedometer() {
         let found = support(&half(), &[layer(h, 40e6, nu)], Below::Rigid, ALONE).unwrap();
         found.stiffness / (oedometric * 0.3 * 0.95 / h) - 1.0
     };
-    // what the rim adds goes with the thickness
+    // the effect of the edge is proportional to the thickness
     let (thin, thinner) = (error(0.04), error(0.02));
     assert!(thinner.abs() < 0.06 && (thin / thinner - 2.0).abs() < 0.3, "{thin} {thinner}");
 }
@@ -161,11 +161,11 @@ fn mistakes_are_named() {
     assert_eq!(plain(&[layer(0.3, f64::NAN, 0.2)]), "expected a positive Young's modulus of layer 1, found NaN");
     assert_eq!(plain(&[layer(0.3, 1e8, 0.5)]), "expected a Poisson's ratio of layer 1 from 0 to below 0.5, found 0.5");
     let steep = Layer { spread: 95f64.to_radians(), ..stack[0] };
-    assert_eq!(plain(&[steep]), "expected the load to spread at 0 to below 90 degrees in layer 1, found 95");
+    assert_eq!(plain(&[steep]), "expected a load spread angle from 0 to below 90 degrees in layer 1, found 95");
     let crowded = Bearing { spacings: [0.6, 0.2], ..sleeper() };
     assert_eq!(
         fails(crowded, &stack, Below::Rigid, Method::StressCone),
-        "expected sleepers at least their width of 0.3 m apart, found 0.2 m"
+        "expected a sleeper spacing of at least the sleeper width, 0.3 m, found 0.2 m"
     );
     assert_eq!(
         fails(sleeper(), &stack, Below::Springs { modulus: -1.0 }, Method::StressCone),
@@ -173,11 +173,11 @@ fn mistakes_are_named() {
     );
     assert_eq!(
         fails(sleeper(), &stack, Below::Rigid, Method::LayeredElastic { neighbours: 1.5 }),
-        "expected neighbours that bear 0 .. 1 of the load, found 1.5"
+        "expected a load share of the neighbours from 0 to 1, found 1.5"
     );
 }
 
-/// The support without panels, closed sums or what stacks before left: every wave and direction in small even steps.
+/// The support without panels, closed sums or data of earlier stacks: every wave and direction in small equal steps.
 fn by_brute_force(bearing: &Bearing, layers: &[Layer], neighbours: f64) -> f64 {
     let top = layers[0];
     let endless = 2.0 * (1.0 - top.poisson_ratio * top.poisson_ratio) / top.youngs_modulus;
@@ -202,7 +202,7 @@ fn by_brute_force(bearing: &Bearing, layers: &[Layer], neighbours: f64) -> f64 {
         let mean = (0..directions).map(direction).sum::<f64>() / directions as f64;
         (kernel::Kernel::new(layers, Below::Rigid).settlement(k) - endless) * mean / (2.0 * std::f64::consts::PI)
     };
-    // Simpson's rule, up to waves that are not felt below the first layer
+    // Simpson's rule, up to waves without effect below the first layer
     let steps = 2 * (6.0 / top.thickness / step).ceil() as usize;
     let weight = |i: usize| if i == 0 || i == steps { 1.0 } else { 2.0 + 2.0 * (i % 2) as f64 };
     let integral = (0..=steps).map(|i| weight(i) * wave((i as f64 * step).max(1e-9))).sum::<f64>() * step / 3.0;
@@ -225,7 +225,7 @@ fn a_footing_gives_what_brute_force_does_whatever_was_asked_before() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// Stiffer ground anywhere makes a stiffer support, and what is added above rock a softer one.
+    /// Stiffer ground anywhere gives a stiffer support, and an additional layer above rock a softer one.
     #[test]
     fn stiffness_follows_the_layers(
         stack in prop::collection::vec((0.05..1.0f64, 10e6..2e9f64, 0.0..0.45f64), 1..4),
@@ -248,7 +248,7 @@ proptest! {
     }
 }
 
-/// A stack that engineers know, and its row in `docs/validation.md`.
+/// A known stack, and its row in `docs/validation.md`.
 struct Known {
     name: &'static str,
     layers: Vec<Layer>,

@@ -1,4 +1,4 @@
-//! A bed of grains: what there is, and how to make it.
+//! A bed of grains: its parts, and the functions to build it.
 
 use super::body::{Body, BodyId, Clump, SPHERE};
 use super::bonds::Bonds;
@@ -23,12 +23,12 @@ use super::walls::{Wall, WallContacts, WallId};
 use super::watch::memory::Watch;
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// Spheres and clumps, the walls round them, and their state.
+/// Spheres and clumps, the walls around them, and their state.
 ///
-/// `R` is the precision of forces, velocities and histories in contacts: `f32` for work, `f64` for reference. Positions,
-/// momenta and sums are `f64` in both. Lengths in m, forces in N, masses in kg, time in s.
+/// `R` is the precision of forces, velocities and contact histories: `f32` for normal work, `f64` for reference.
+/// Positions, momenta and sums are `f64` in both. Lengths in m, forces in N, masses in kg, time in s.
 ///
-/// Numbers that cannot be are told by the next step, before it moves anything, or by [`Bed::check`].
+/// Invalid numbers are reported by the next step, before it moves anything, or by [`Bed::check`].
 #[derive(Debug, Clone)]
 pub struct Bed<R: Real = f32> {
     pub(super) domain: Domain,
@@ -36,17 +36,17 @@ pub struct Bed<R: Real = f32> {
     pub(super) gravity: Gravity,
     pub(super) damping: f64,
     pub(super) dt: f64,
-    /// Sorted by place, where the contacts are up to date.
+    /// Sorted by position if the contacts are up to date.
     pub(super) bodies: Vec<Body>,
-    /// Records of the pebbles, body by body; two that touch nothing stand behind.
+    /// Records of the pebbles, body by body; behind them two records that touch nothing.
     pub(super) records: Vec<R::Record>,
     /// Body of each pebble.
     pub(super) owner: Vec<u32>,
     /// In the order of the bodies.
     pub(super) clumps: Vec<Clump>,
-    /// Pebbles' places in the frames of their bodies.
+    /// Positions of the pebbles in the frames of their bodies.
     pub(super) arms: Vec<Vec3>,
-    /// Place of each body, by the order of making.
+    /// Index of each body in the bed, by the order of creation.
     pub(super) index: Vec<u32>,
     pub(super) walls: Vec<Wall>,
     pub(super) contacts: Contacts<R>,
@@ -58,9 +58,9 @@ pub struct Bed<R: Real = f32> {
     pub(super) ledger: Ledger,
     pub(super) time: f64,
     pub(super) steps: u64,
-    /// Whether velocities are still those of the start, not of a half step.
+    /// Whether velocities still belong to the start and not to a half step.
     pub(super) fresh: bool,
-    /// Whether something was added or set that nobody has checked.
+    /// Whether something was added or set that has not been checked.
     pub(super) unchecked: bool,
     pub(super) limits: Limits,
     pub(super) watch: Watch,
@@ -90,7 +90,7 @@ pub struct Placed<'a> {
     pub surface: u16,
 }
 
-/// What one can read of a body.
+/// The readable state of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyState {
     pub id: BodyId,
@@ -100,9 +100,9 @@ pub struct BodyState {
     pub velocity: [f64; 3],
     /// Angular velocity of the last half step \[rad/s\].
     pub spin: [f64; 3],
-    /// Unit quaternion w, x, y, z; the identity for a sphere, whose turning does not show.
+    /// Unit quaternion w, x, y, z; the identity for a sphere, whose rotation is not tracked.
     pub attitude: [f64; 4],
-    /// With weight, without what mass scaling added \[kg\].
+    /// Mass that has weight, without the mass added by mass scaling \[kg\].
     pub mass: f64,
     pub surface: u16,
     /// Number of pebbles.
@@ -206,7 +206,7 @@ impl<R: Real> Bed<R> {
             id,
             rank: id,
             first: self.owner.len() as u32,
-            // too many are none, which the check finds
+            // too many pebbles give 0, which the check reports
             pebbles: u16::try_from(pebbles).unwrap_or(0),
             surface,
             clump: SPHERE,
@@ -225,7 +225,7 @@ impl<R: Real> Bed<R> {
         BodyId(body.id)
     }
 
-    /// Adds a wall. Its frame stands at `pose`.
+    /// Adds a wall. `pose` is the position of its frame.
     pub fn add_wall(&mut self, shape: Shape, pose: Pose, surface: u16, motion: WallMotion) -> WallId {
         let (cell, position) = self.domain.split(pose.position.into());
         self.walls.push(Wall {
@@ -252,10 +252,10 @@ impl<R: Real> Bed<R> {
         self.add_wall(Shape::Plane { normal: normal.into() }, pose, surface, WallMotion::Fixed)
     }
 
-    /// Lets the corners of a floor move: they are a guide's to move, see [`Bed::guided_step`].
+    /// Lets the corners of a floor move; a guide moves them, see [`Bed::guided_step`].
     ///
     /// # Panics
-    /// If the wall is no level plane.
+    /// If the wall is not a level plane.
     pub fn soften(&mut self, wall: WallId, sheet: Sheet) {
         let wall = &mut self.walls[wall.0 as usize];
         let up = matches!(wall.shape, Shape::Plane { normal } if normal == Vector3::z());
@@ -264,14 +264,14 @@ impl<R: Real> Bed<R> {
         self.lists.outdated = true;
     }
 
-    /// Moves a wall in another way from now on.
+    /// Gives a wall another motion from now on.
     pub fn set_motion(&mut self, wall: WallId, motion: WallMotion) {
         let wall = &mut self.walls[wall.0 as usize];
         (wall.velocity, wall.spin) = match &motion {
-            // a servo waits for what it will feel
+            // a servo has no velocity until it has a contact force
             WallMotion::Servo { .. } => (Vector3::zeros(), Vector3::zeros()),
             faulty if faulty.check().is_err() => (Vector3::zeros(), Vector3::zeros()),
-            // what has a mass keeps its speed
+            // a wall with a mass keeps its speed
             WallMotion::Loaded { axis, .. } => (axis * wall.velocity.dot(axis), Vector3::zeros()),
             given => given.velocity(self.time, self.dt.max(f64::MIN_POSITIVE), &Felt::default()),
         };
@@ -279,7 +279,7 @@ impl<R: Real> Bed<R> {
         self.unchecked = true;
     }
 
-    /// Puts a wall elsewhere at once, with its motion. What it passes on the way does not feel it.
+    /// Puts a wall at another position at once; it keeps its motion. Grains on the way are not touched.
     pub fn stand(&mut self, wall: WallId, place: [f64; 3]) {
         let (cell, position) = self.domain.split(place);
         let wall = &mut self.walls[wall.0 as usize];
@@ -301,7 +301,7 @@ impl<R: Real> Bed<R> {
         let clump = &mut self.clumps[body.clump as usize];
         let matrix = rotation::matrix(&clump.attitude);
         let local = rotate_back(&matrix, spin);
-        // what keeps its spin has no momentum to speak of
+        // a body that keeps its spin has no angular momentum
         let held = clump.inverse_inertia == [0.0; 3];
         let momentum = [0, 1, 2].map(|c| if held { 0.0 } else { local[c] / clump.inverse_inertia[c] });
         body.spin = rotate(&matrix, momentum);
@@ -312,7 +312,7 @@ impl<R: Real> Bed<R> {
         }
     }
 
-    /// A body that keeps its velocity and spin, whatever pushes.
+    /// Makes a body keep its velocity and spin under any force.
     pub fn fix(&mut self, id: BodyId) {
         let body = &mut self.bodies[self.index[id.0 as usize] as usize];
         (body.inverse_mass, body.inverse_inertia) = (0.0, 0.0);
@@ -321,7 +321,7 @@ impl<R: Real> Bed<R> {
         }
     }
 
-    /// A body that does not turn.
+    /// Makes a body keep its rotation at zero.
     pub fn hold_rotation(&mut self, id: BodyId) {
         let velocity = self.body_state(id).velocity;
         self.set_velocity(id, velocity, [0.0; 3]);
@@ -353,13 +353,13 @@ impl<R: Real> Bed<R> {
         self.damping
     }
 
-    /// Changes every contact law, friction for example.
+    /// Changes every contact law, for example its friction.
     pub fn change_laws(&mut self, change: impl FnMut(&mut ContactLaw)) {
         self.laws.change(change);
         self.unchecked = true;
     }
 
-    /// Takes other laws between the same surfaces. Contacts keep their histories.
+    /// Replaces the laws between the same surfaces. Contacts keep their histories.
     ///
     /// # Panics
     /// If there are fewer or more surfaces than before.
@@ -427,12 +427,12 @@ impl<R: Real> Bed<R> {
         }
     }
 
-    /// All bodies in the order of making.
+    /// All bodies in the order of creation.
     pub fn states(&self) -> impl Iterator<Item = BodyState> + '_ {
         (0..self.bodies.len() as u32).map(|id| self.body_state(BodyId(id)))
     }
 
-    /// All pebbles, body by body in the order of making.
+    /// All pebbles, body by body in the order of creation.
     pub fn pebbles(&self) -> impl Iterator<Item = PebbleState> + '_ {
         self.index.iter().flat_map(move |&place| {
             let body = &self.bodies[place as usize];

@@ -1,7 +1,7 @@
-//! Lists of what may touch: bodies sorted by place, pairs found, histories carried over.
+//! Lists of possible contacts: bodies sorted by position, pairs found, contact histories carried over.
 //!
-//! Nothing here changes a bit of the motion. The contacts of a pebble are summed in an order that depends on its
-//! neighbours only, so how often lists are made, and how far they reach, is a matter of speed.
+//! Lists do not change the motion by a single bit. The contacts of a pebble are summed in an order that depends only on
+//! its neighbours, so the number of lists made and their reach affect only the speed.
 
 use super::bed::Bed;
 use super::body::{Body, SPHERE};
@@ -19,24 +19,24 @@ use super::walls::{Kept, Near, Wall, WallContacts, moved};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Steps that lists should last, at least; their reach grows until they do.
+/// Number of steps that lists should last; their reach grows until they do.
 const LIFE: u64 = 400;
-/// Steps between looks whether bodies have left their cells.
+/// Number of steps after which the bed checks whether bodies have left their cells.
 const SETTLE: u64 = 128;
-/// What single precision may hide of a displacement \[m\].
+/// Rounding error of a displacement in single precision \[m\].
 const SLACK: f64 = 1e-6;
 
-/// A contact that goes on in a new list, of a lower and a higher body.
+/// A contact that continues in a new list, between a lower and a higher body.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Carried<R> {
     pub low: (u32, u16),
     pub high: (u32, u16),
-    /// Force on the lower.
+    /// Shear force on the lower body.
     pub shear: [R; 3],
     pub damping: [R; 3],
 }
 
-/// Histories by the lower of two bodies.
+/// Contact histories by the lower of two bodies.
 struct Histories<R> {
     start: Vec<u32>,
     all: Vec<Carried<R>>,
@@ -58,7 +58,7 @@ impl<R: Real> Histories<R> {
 }
 
 impl<R: Real> Bed<R> {
-    /// Checks what is new, and makes the lists anew where they are no longer good.
+    /// Checks new parts, and makes new lists if the present lists are no longer valid.
     pub(super) fn refresh(&mut self) -> Result<(), Failure> {
         if self.unchecked {
             self.check()?;
@@ -70,12 +70,12 @@ impl<R: Real> Bed<R> {
         if self.lists.travel <= self.lists.skin {
             return Ok(());
         }
-        // the bound is spent; what was really gone decides
+        // the bound is used up; the actual approach decides
         self.lists.travel = self.gone();
         if self.lists.travel <= self.lists.skin { Ok(()) } else { Ok(self.rebuild()?) }
     }
 
-    /// The most that two bodies, or a body and a wall, can have come nearer since the lists were made \[m\].
+    /// The largest possible approach of two bodies, or of a body and a wall, since the lists were made \[m\].
     fn gone(&self) -> f64 {
         let pebbles = self.owner.len();
         let square = (0..pebbles)
@@ -96,12 +96,12 @@ impl<R: Real> Bed<R> {
         let carried = self.carried();
         let kept = self.kept();
         let done = self.rebuild_with(carried, kept);
-        // lists that are not finished must not be used
+        // unfinished lists must not be used
         self.lists.outdated |= done.is_err();
         done
     }
 
-    /// Histories of all contacts between pebbles.
+    /// Contact histories of all contacts between pebbles.
     pub(super) fn carried(&self) -> Vec<Carried<R>> {
         let contacts = &self.contacts;
         let mut carried = Vec::new();
@@ -124,7 +124,7 @@ impl<R: Real> Bed<R> {
         self.wall_contacts.keep(|pebble| self.name(pebble))
     }
 
-    /// Body in the order of making, and pebble in the body.
+    /// Number of the body in the order of creation, and index of the pebble in the body.
     pub(super) fn name(&self, pebble: u32) -> (u32, u16) {
         let body = &self.bodies[self.owner[pebble as usize] as usize];
         (body.id, (pebble - body.first) as u16)
@@ -146,7 +146,8 @@ impl<R: Real> Bed<R> {
                 (body, part, self.bodies[self.owner[pebble as usize] as usize].surface)
             };
             let near = Near { domain: &domain, seen: &seen, grids: &grids, skin };
-            // not beside the pairs: memory that another thread has made for the lists of walls made their forces a quarter slower
+            // not in parallel with the pairs: memory allocated by another thread for the wall lists slowed the wall
+            // forces by a quarter
             let walls = WallContacts::find(&self.walls, near, &self.laws, about, &kept);
             (grids.pairs(skin)?, walls)
         };
@@ -160,7 +161,7 @@ impl<R: Real> Bed<R> {
         Ok(())
     }
 
-    /// Reach of the lists: so that they last, and no more.
+    /// Chooses the reach of the lists: large enough for their life, but no larger.
     fn choose_skin(&mut self) {
         let largest = self.records[..self.owner.len()].iter().map(Record::radius).fold(0.0, f64::max);
         let (least, most) = (1e-3 * largest, 0.2 * largest);
@@ -168,7 +169,7 @@ impl<R: Real> Bed<R> {
         build.skin = match build.fixed_skin {
             Some(skin) => skin,
             None if build.count == 0 || build.skin == 0.0 => {
-                // what the fastest would go in the life of a list
+                // distance that the fastest body covers in the life of a list
                 let speed = 2.0 * self.bodies.iter().map(|b| dot(b.velocity, b.velocity)).fold(0.0, f64::max).sqrt();
                 (speed * self.dt * LIFE as f64).max(8.0 * least).min(most)
             }
@@ -191,8 +192,8 @@ impl<R: Real> Bed<R> {
         build.outdated = false;
     }
 
-    /// Brings bodies that have left their cells well behind back into the cells where they are. That rounds their offsets, so it is
-    /// done at fixed steps, never when lists happen to be made.
+    /// Moves bodies that are far outside their cells into the cells of their positions. This rounds their offsets, so
+    /// it is done at fixed steps and does not depend on when lists are made.
     pub(super) fn settle(&mut self) {
         if !self.steps.is_multiple_of(SETTLE) {
             return;
@@ -220,7 +221,7 @@ impl<R: Real> Bed<R> {
         }
     }
 
-    /// Sorts bodies so that neighbours are near in memory.
+    /// Sorts bodies so that neighbours are close in memory.
     fn sort(&mut self) {
         let place = |body: &Body| {
             let first = self.records[body.first as usize].position();
@@ -235,7 +236,7 @@ impl<R: Real> Bed<R> {
         } else {
             self.permute(&order);
         }
-        // a pair far apart, for the places that fill up a block
+        // a pair far apart, which fills up blocks
         for x in [0.0, 1e3] {
             let mut idle = R::Record::new(0.0, 1.0);
             idle.place([x, 0.0, 0.0]);
@@ -278,7 +279,7 @@ impl<R: Real> Bed<R> {
         self.owner.iter().enumerate().map(of).collect()
     }
 
-    /// Puts pairs into blocks of one law, task by task, with their histories.
+    /// Puts pairs into blocks with one law each, task by task, with their histories.
     fn fill(&mut self, pairs: Vec<Vec<Pair>>, histories: &Histories<R>) {
         let idle = self.owner.len() as u32;
         let mut contacts = Contacts::default();
@@ -332,7 +333,7 @@ impl<R: Real> Bed<R> {
         self.contacts = contacts;
     }
 
-    /// Binds the bonds that hold by the new order, drops the broken ones, and makes room for what all contacts do.
+    /// Renumbers the intact bonds, drops the broken bonds, and allocates the results of all contacts.
     fn rebind(&mut self) -> Result<(), CellTooSmall> {
         self.bonds.dropped = self.broken_bonds();
         self.bind(self.bonds.held())?;
@@ -341,7 +342,7 @@ impl<R: Real> Bed<R> {
         Ok(())
     }
 
-    /// Where tasks begin; blocks are not known yet.
+    /// First indices of the tasks; blocks are not known yet.
     fn tasks(&self) -> Vec<Task> {
         let mut tasks = Vec::new();
         let mut clump = 0;
@@ -355,20 +356,20 @@ impl<R: Real> Bed<R> {
         tasks
     }
 
-    /// Pairs by the task of the earlier of their bodies; most are found in it.
+    /// Pairs by the task of the earlier of their bodies; most pairs are found in this task.
     fn by_task(&self, pairs: Vec<Vec<Pair>>, tasks: usize) -> Vec<Vec<Pair>> {
         let task = |pair: &Pair| self.owner[pair.first as usize].min(self.owner[pair.second as usize]) as usize / TASK;
         let mut counts = vec![0; tasks];
         pairs.iter().flatten().for_each(|pair| counts[task(pair)] += 1);
         let mut sorted: Vec<Vec<Pair>> = counts.into_iter().map(Vec::with_capacity).collect();
-        // what is done is given back at once
+        // memory is freed as soon as it is not needed
         for found in pairs {
             found.iter().for_each(|pair| sorted[task(pair)].push(*pair));
         }
         sorted
     }
 
-    /// Lists the contacts of each pebble, in an order that copies of a bay share.
+    /// Lists the contacts of each pebble in an order that is the same in all copies of a bay.
     fn connect(&mut self) {
         let (pebbles, contacts) = (self.owner.len(), &self.contacts);
         let idle = pebbles as u32;
@@ -414,8 +415,8 @@ impl<R: Real> Bed<R> {
         self.incidence = Incidence { start, entries };
     }
 
-    /// Where a contact stands among those of its pebble: first the neighbours' cells as seen from here, then their ranks; behind them walls
-    /// and bonds, which have an order of their own.
+    /// Sort key of a contact among the contacts of its pebble: first the cell of the neighbour relative to the pebble,
+    /// then the rank of the neighbour. Walls and bonds come last, in a separate order.
     fn order_of(&self, entry: u32) -> (u8, u32, u32) {
         let (place, second) = ((entry >> 1) as usize, entry & 1 == 1);
         if place >= self.contacts.len() {
@@ -430,7 +431,8 @@ impl<R: Real> Bed<R> {
         (16 * x + 4 * y + z, body.rank, other - body.first)
     }
 
-    /// Notes where everything is. Displacements are kept in single precision, from an origin that blocks of pebbles share.
+    /// Stores all positions. Displacements are kept in single precision, relative to an origin that blocks of pebbles
+    /// share.
     fn remember(&mut self) {
         let records = &self.records[..self.owner.len()];
         self.lists.origin = records.chunks(BLOCK).map(|block| block[0].position()).collect();

@@ -1,7 +1,8 @@
-//! Finds what no bed can hold, before anything moves.
+//! Finds invalid values before anything moves.
 //!
-//! Bodies, walls and settings enter a bed unchecked, so that a bed is made without an error at every line. What has changed
-//! is checked before the next step, which then fails with the fault and moves nothing; [`Bed::check`] looks at once.
+//! Bodies, walls and settings are added to a bed unchecked, so that building a bed does not return an error at every
+//! line. Changes are checked before the next step; an invalid value makes that step fail, and nothing is moved.
+//! [`Bed::check`] checks at once.
 
 use super::bed::Bed;
 use super::body::{Body, BodyId, SPHERE};
@@ -14,11 +15,11 @@ use super::record::Record;
 use super::vector::{Vec3, dot, norm, sub};
 use super::walls::{Wall, WallId};
 
-/// Farther from the origin a body is lost in the rounding of places \[m\], and cells run out of numbers.
+/// Largest distance from the origin \[m\]. Beyond it positions are lost in rounding, and cell numbers overflow.
 const FARTHEST: f64 = 1e8;
 
 impl<R: Real> Bed<R> {
-    /// Fails with the first number that cannot be, in the order settings, laws, bodies, walls.
+    /// Fails with the first invalid number, in the order settings, laws, bodies, walls.
     pub fn check(&self) -> Result<(), Fault> {
         self.check_settings()?;
         self.check_laws()?;
@@ -38,7 +39,7 @@ impl<R: Real> Bed<R> {
             let cells = self.domain.cells(axis).unwrap_or(1);
             bed.want(cells > 0, "number of bays", f64::from(cells), POSITIVE)?;
         }
-        // no step set yet is for a step to tell
+        // a missing time step is reported by the step itself
         bed.want(self.dt.is_finite() && self.dt >= 0.0, "time step", self.dt, POSITIVE)?;
         bed.want((0.0..1.0).contains(&self.damping), "local damping", self.damping, "a share from 0 to below 1")?;
         if let Some(skin) = self.lists.fixed_skin {
@@ -58,9 +59,10 @@ impl<R: Real> Bed<R> {
             Gravity::Table { times, values } => {
                 bed.want(!times.is_empty(), "number of times of gravity", 0.0, POSITIVE)?;
                 let same = times.len() == values.len();
-                bed.want(same, "number of values of gravity", values.len() as f64, "that of times")?;
+                bed.want(same, "number of values of gravity", values.len() as f64, "the number of times")?;
                 bed.numbers("times of gravity", times)?;
-                let later = |t: &[f64]| bed.want(t[0] < t[1], "times of gravity", t[1], "each after the one before");
+                let later =
+                    |t: &[f64]| bed.want(t[0] < t[1], "times of gravity", t[1], "each above the time before it");
                 times.windows(2).try_for_each(later)?;
                 bed.numbers("gravity", values.as_flattened())
             }
@@ -83,7 +85,7 @@ impl<R: Real> Bed<R> {
 
     fn check_surface(&self, of: Subject, surface: u16) -> Result<(), Fault> {
         let fine = usize::from(surface) < self.laws.surfaces();
-        of.want(fine, "surface", f64::from(surface), "a number below that of the surfaces with laws")
+        of.want(fine, "surface", f64::from(surface), "a number below the number of surfaces with laws")
     }
 
     fn check_body(&self, body: &Body) -> Result<(), Fault> {
@@ -120,7 +122,7 @@ impl<R: Real> Bed<R> {
         self.check_period(of, records, centre)
     }
 
-    /// A body must not reach itself round a period, however it turns.
+    /// A body must not touch itself across a period at any rotation.
     fn check_period(&self, of: Subject, records: &[R::Record], centre: Vec3) -> Result<(), Fault> {
         let reach = records.iter().map(|r| r.radius() + norm(sub(r.position(), centre))).fold(0.0, f64::max);
         let shortest = (0..3).filter_map(|axis| self.domain.period(axis)).fold(f64::INFINITY, f64::min);

@@ -1,4 +1,4 @@
-//! The whole state of a bed as data, and back, bit by bit.
+//! Converts the whole state of a bed to data, and back, bit by bit.
 
 use super::bed::Bed;
 use super::body::{Body, Clump};
@@ -16,7 +16,8 @@ use super::vector::Vec3;
 use super::walls::{Kept, Wall};
 use serde::{Deserialize, Serialize};
 
-/// Everything that the future of a bed depends on; serialise it with a format that keeps every bit of a number.
+/// The complete state on which the further motion of a bed depends; serialise it with a format that keeps every bit of
+/// a number.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Checkpoint<R: Real> {
@@ -46,7 +47,7 @@ pub struct Checkpoint<R: Real> {
     fixed_skin: Option<f64>,
 }
 
-/// A pebble's record.
+/// The record of a pebble.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(bound = "")]
 struct Grain<R: Real> {
@@ -57,11 +58,11 @@ struct Grain<R: Real> {
     mass: R,
 }
 
-/// Forces, velocities and stiffnesses of a bed at most, in SI: their squares are numbers in either precision.
+/// Largest valid force, velocity and stiffness in SI units: their squares are finite in both precisions.
 const LARGEST: f64 = 1e15;
-/// Time step of a bed at most, s.
+/// Longest valid time step, s.
 const LONGEST: f64 = 1.0;
-/// Layout of a checkpoint; another one is refused.
+/// Layout of a checkpoint; other layouts are refused.
 const VERSION: u32 = 2;
 
 /// A checkpoint that cannot be restored.
@@ -69,7 +70,7 @@ const VERSION: u32 = 2;
 pub enum RestoreError {
     /// Made by another version of this program.
     Version { found: u32 },
-    /// Its parts do not belong together.
+    /// Its parts do not match.
     Inconsistent(&'static str),
     /// Its lists cannot be made.
     Failure(Failure),
@@ -79,7 +80,10 @@ impl std::fmt::Display for RestoreError {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
             RestoreError::Version { found } => {
-                write!(f, "the checkpoint has layout {found}, this program reads layout {VERSION}; run from the start")
+                write!(
+                    f,
+                    "the checkpoint has layout {found}, but this program reads layout {VERSION}; run from the start"
+                )
             }
             RestoreError::Inconsistent(what) => write!(f, "the checkpoint is damaged: {what}; run from the start"),
             RestoreError::Failure(failure) => failure.fmt(f),
@@ -90,7 +94,7 @@ impl std::fmt::Display for RestoreError {
 impl std::error::Error for RestoreError {}
 
 impl<R: Real> Bed<R> {
-    /// The state as data. A bed restored from it goes on bit by bit as this one does.
+    /// The state as data. A bed restored from it continues bit by bit like this bed.
     pub fn checkpoint(&self) -> Checkpoint<R> {
         let pebble = |r: &R::Record| Grain {
             place: r.position(),
@@ -160,7 +164,7 @@ impl<R: Real> Bed<R> {
 }
 
 impl<R: Real> Checkpoint<R> {
-    /// Whether all parts belong together.
+    /// Fails unless all parts match.
     fn check(&self) -> Result<(), RestoreError> {
         use RestoreError::Inconsistent;
         if self.version != VERSION {
@@ -178,14 +182,14 @@ impl<R: Real> Checkpoint<R> {
                 _ => return Err(Inconsistent("bodies are not numbered one by one")),
             }
             if body.first != pebbles {
-                return Err(Inconsistent("pebbles do not follow their bodies"));
+                return Err(Inconsistent("pebbles are not in the order of their bodies"));
             }
             pebbles += u32::from(body.pebbles);
             parts[body.id as usize] = body.pebbles;
             if body.clump != super::body::SPHERE {
                 let arms = self.clumps.get(body.clump as usize).map(|c| c.arms as usize + usize::from(body.pebbles));
                 if body.clump != clumps || arms.is_none_or(|end| end > self.arms.len()) {
-                    return Err(Inconsistent("clumps do not follow their bodies"));
+                    return Err(Inconsistent("clumps are not in the order of their bodies"));
                 }
                 clumps += 1;
             }
@@ -202,15 +206,15 @@ impl<R: Real> Checkpoint<R> {
         }
         if !self.shear.iter().all(known) || self.walls.iter().any(|w| usize::from(w.surface()) >= self.laws.surfaces())
         {
-            return Err(Inconsistent("a contact or a wall belongs to nothing"));
+            return Err(Inconsistent("a contact names a body, or a wall a surface, that does not exist"));
         }
         if !self.bonds.iter().all(bound) {
-            return Err(Inconsistent("a bond belongs to nothing"));
+            return Err(Inconsistent("a bond names a pebble or a glue that does not exist"));
         }
-        self.is_sane().then_some(()).ok_or(Inconsistent("it holds a number that no bed can hold"))
+        self.is_sane().then_some(()).ok_or(Inconsistent("it holds a number out of range"))
     }
 
-    /// Whether what no other check looks at is in numbers of which forces can be computed: damaged bytes hold any.
+    /// Whether the numbers that no other check covers are in their range: damaged bytes may hold any number.
     fn is_sane(&self) -> bool {
         let within = |x: f64| x.abs() <= LARGEST;
         let real = |x: &R| within(x.to_f64());

@@ -14,22 +14,22 @@ pub(super) type BlockVector<R> = [[R; BLOCK]; 3];
 /// Pairs near each other, in blocks of one law each.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Contacts<R> {
-    /// Pebbles; what fills up a block is a pair that is far apart.
+    /// Indices of the pebbles; unused places of a block hold a pair that is far apart.
     pub first: Vec<u32>,
     pub second: Vec<u32>,
-    /// What the first is shifted by.
+    /// Shift of the first pebble.
     pub image: Vec<Image>,
     /// Law of each block.
     pub law: Vec<u16>,
     /// Force of the shear springs \[N\].
     pub shear: Vec<BlockVector<R>>,
-    /// Force of the dashpots one step ago, where energy is watched \[N\].
+    /// Force of the dashpots one step ago, if energy is watched \[N\].
     pub damping: Vec<BlockVector<R>>,
-    /// What the contacts do to their bodies, one for each contact; those with walls come behind.
+    /// Forces and moments on the bodies, one entry per contact; contacts with walls come last.
     pub outcomes: Vec<Outcome<R>>,
 }
 
-/// Energy in contacts, and lost by them in one step \[J\].
+/// Energy stored in contacts, and energy lost in contacts in one step \[J\].
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactEnergy {
     pub strain: f64,
@@ -45,7 +45,7 @@ impl std::ops::AddAssign for ContactEnergy {
     }
 }
 
-/// What the pass reads beside the contacts.
+/// Other data that the pass reads.
 #[derive(Clone, Copy)]
 pub(super) struct Surroundings<'a, R: Real> {
     pub records: &'a [R::Record],
@@ -61,18 +61,18 @@ pub(super) fn shifts(domain: &Domain) -> [[f64; 3]; 64] {
 }
 
 impl<R: Real> Contacts<R> {
-    /// Number of places, those that fill up blocks included.
+    /// Number of places in blocks, including unused places.
     pub fn len(&self) -> usize {
         self.first.len()
     }
 
-    /// Makes room for what watching energy needs, or gives it back.
+    /// Allocates or frees the arrays for watching energy.
     pub fn watch(&mut self, on: bool) {
         let blocks = if on { self.shear.len() } else { 0 };
         self.damping.resize(blocks, [[R::default(); BLOCK]; 3]);
     }
 
-    /// Computes the forces of `tasks` from the state of the pebbles; energies only where they are watched.
+    /// Computes the forces of `tasks` from the state of the pebbles; energies only if they are watched.
     pub fn evaluate(&mut self, tasks: &[Task], around: Surroundings<R>) -> ContactEnergy {
         let start = tasks[0].block as usize;
         let mut shear = &mut self.shear[start..];
@@ -105,7 +105,7 @@ impl<R: Real> Contacts<R> {
     }
 }
 
-/// The contacts of a task at work.
+/// The contacts of the task in work.
 struct Pass<'a, R: Real> {
     around: Surroundings<'a, R>,
     first: &'a [u32],
@@ -125,7 +125,7 @@ impl<R: Real> Work<R> for Pass<'_, R> {
         let mut sums = [[0.0; BLOCK]; 3];
         for block in 0..self.shear.len() {
             self.ask_for(block + AHEAD);
-            // no closures on this path: their bodies would lose the instructions of the lanes
+            // no closures on this path: the compiler would not use the lane instructions in their bodies
             match &self.around.laws[usize::from(self.law[block])] {
                 Prepared::Linear(rule) => self.block(lanes, block, rule, &mut sums),
                 Prepared::Hertz(rule) => self.block(lanes, block, rule, &mut sums),
@@ -136,11 +136,11 @@ impl<R: Real> Work<R> for Pass<'_, R> {
     }
 }
 
-/// Blocks between what is asked for and what is computed.
+/// Number of blocks between the prefetched block and the computed block.
 const AHEAD: usize = 4;
 
 impl<R: Real> Pass<'_, R> {
-    /// Asks for all that a block reads and writes. Its earlier pebbles follow each other in memory and come by themselves.
+    /// Prefetches all that a block reads and writes. Its earlier pebbles are contiguous in memory and need no prefetch.
     #[inline(always)]
     fn ask_for(&self, block: usize) {
         let Some(shear) = self.shear.get(block) else { return };
@@ -186,7 +186,7 @@ impl<R: Real> Pass<'_, R> {
     }
 }
 
-/// Shift of the first pebbles; none where all are in the cell of the second.
+/// Shift of the first pebbles; none if all are in the cell of the second pebble.
 #[inline(always)]
 pub(super) fn shift_of<L: Lanes>(lanes: L, images: &[Image], shifts: &[[f64; 3]; 64]) -> Option<[Fine<L>; 3]> {
     let mut any = 0;

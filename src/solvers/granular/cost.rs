@@ -1,4 +1,4 @@
-//! What steps cost: how far the lists reach, how often they were made, what a step moves through memory.
+//! Cost of steps: reach of the lists, number of lists made, bytes moved per step.
 
 use super::bed::Bed;
 use super::body::{Body, Clump};
@@ -11,15 +11,15 @@ use super::vector::Vec3;
 use super::walls::{Entry, Slot};
 
 impl<R: Real> Bed<R> {
-    /// How far apart pairs may be and still be listed \[m\]; `None` lets the bed choose from how long its lists last.
-    /// A matter of speed: the motion is the same, bit by bit.
+    /// Largest distance of listed pairs \[m\]; with `None` the bed chooses it from the life of its lists. It affects
+    /// only the speed; the motion is the same, bit by bit.
     pub fn set_skin(&mut self, skin: Option<f64>) {
         self.lists.fixed_skin = skin;
         self.lists.outdated = true;
         self.unchecked = true;
     }
 
-    /// How far apart pairs may be and still be listed at present \[m\].
+    /// Present largest distance of listed pairs \[m\].
     pub fn skin(&self) -> f64 {
         self.lists.skin
     }
@@ -29,7 +29,7 @@ impl<R: Real> Bed<R> {
         self.lists.count
     }
 
-    /// Makes the lists where they are not good for the next step, which then need not do so.
+    /// Makes the lists if they are not valid for the next step, so that the step does not need to make them.
     pub fn make_lists(&mut self) -> Result<(), Failure> {
         if self.dt <= 0.0 {
             return Err(Failure::NoTimeStep);
@@ -37,8 +37,8 @@ impl<R: Real> Bed<R> {
         self.refresh()
     }
 
-    /// Bytes that a step moves if every array comes from memory once for each pass over it, and goes back once where it
-    /// changes. What stays in a cache between passes is counted nevertheless.
+    /// Bytes moved by a step if every array is read from memory once per pass and written back once if it changes. Data
+    /// that stay in a cache between passes are counted as well.
     pub fn bytes_per_step(&self) -> u64 {
         let bytes = |count: usize, each: usize| (count * each) as u64;
         let (places, pebbles, walls) = (self.contacts.len(), self.owner.len(), self.wall_contacts.slots.len());

@@ -1,20 +1,20 @@
-//! Where bodies may be: open or periodic in each direction, cut along x into bays.
+//! Space of the bodies: open or periodic in each direction, divided along x into bays.
 //!
-//! A position is a cell and an offset in it. Copies of a bay have equal offsets, so what happens between neighbours
-//! is the same arithmetic in every copy, bit by bit.
+//! A position is a cell and an offset in the cell. Copies of a bay have equal offsets, so the arithmetic between
+//! neighbours is the same in every copy, bit by bit.
 
 use serde::{Deserialize, Serialize};
 
 /// Cells of the domain along each axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Domain {
-    /// Length of a cell \[m\]; none where the axis is one open cell.
+    /// Length of a cell \[m\]; none if the axis is one open cell.
     lengths: [Option<f64>; 3],
-    /// Cells after which the axis comes back to itself; none where it goes on for ever.
+    /// Number of cells in a period of the axis; none if the axis is not periodic.
     counts: [Option<u32>; 3],
 }
 
-/// Relative cells of two bodies, of -1, 0 and 1 along each axis; 0 is the same cell.
+/// Relative cells of two bodies, -1, 0 or 1 along each axis; 0 is the same cell.
 pub type Image = u8;
 
 impl Default for Domain {
@@ -29,13 +29,13 @@ impl Domain {
         Domain { lengths: [None; 3], counts: [None; 3] }
     }
 
-    /// Periodic along `axis` (0, 1, 2 for x, y, z) after `length` \[m\], which a bed checks.
+    /// Periodic along `axis` (0, 1, 2 for x, y, z) with the period `length` \[m\], which a bed checks.
     pub fn periodic(mut self, axis: usize, length: f64) -> Domain {
         (self.lengths[axis], self.counts[axis]) = (Some(length), Some(1));
         self
     }
 
-    /// `count` bays of `length` \[m\] along x, the last next to the first.
+    /// `count` bays of `length` \[m\] along x; the last bay is next to the first.
     pub fn periodic_bays(mut self, length: f64, count: u32) -> Domain {
         self = self.periodic(0, length);
         self.counts[0] = Some(count);
@@ -63,12 +63,12 @@ impl Domain {
         self.counts[axis]
     }
 
-    /// Cell and offset of a place \[m\].
+    /// Cell and offset of a position \[m\].
     pub fn split(&self, place: [f64; 3]) -> ([i32; 3], [f64; 3]) {
         self.settle([0; 3], place)
     }
 
-    /// Cell and offset once offsets are brought back into their cell.
+    /// Cell and offset after the offset is moved back into its cell.
     pub(super) fn settle(&self, mut cell: [i32; 3], mut offset: [f64; 3]) -> ([i32; 3], [f64; 3]) {
         for axis in 0..3 {
             if let Some(length) = self.lengths[axis] {
@@ -82,12 +82,12 @@ impl Domain {
         (cell, offset)
     }
 
-    /// Whether an offset is in its cell, or out of it by less than a quarter of its length.
+    /// Whether an offset is in its cell, or outside by less than a quarter of the cell length.
     pub(super) fn near_cell(&self, offset: [f64; 3]) -> bool {
         (0..3).all(|axis| self.lengths[axis].is_none_or(|l| (-0.25 * l..1.25 * l).contains(&offset[axis])))
     }
 
-    /// Where a cell's offset lies \[m\], not wrapped into the period.
+    /// Position of an offset in a cell \[m\], not wrapped into the period.
     pub fn place(&self, cell: [i32; 3], offset: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|axis| offset[axis] + self.lengths[axis].map_or(0.0, |l| l * f64::from(cell[axis])))
     }
@@ -97,7 +97,7 @@ impl Domain {
         [0, 1, 2].map(|axis| self.counts[axis].map_or(cell[axis], |n| cell[axis].rem_euclid(n as i32)))
     }
 
-    /// Cells from `b` to `a` along the shorter way round, given what their offsets differ by.
+    /// Number of cells from `b` to `a` the shorter way; `apart` is the difference of their offsets.
     fn steps(&self, axis: usize, a: i32, b: i32, apart: f64) -> Option<i32> {
         let Some(length) = self.lengths[axis] else { return Some(0) };
         let steps = match self.counts[axis] {
@@ -111,7 +111,7 @@ impl Domain {
         (-1..=1).contains(&steps).then_some(steps)
     }
 
-    /// What to shift the first of two by when they meet; none where they are more than a cell apart.
+    /// Shift of the first of two neighbours; none if they are more than a cell apart.
     pub(super) fn image(&self, a: ([i32; 3], [f64; 3]), b: ([i32; 3], [f64; 3])) -> Option<Image> {
         let mut image = 0;
         for axis in 0..3 {
@@ -127,7 +127,7 @@ impl Domain {
         [0, 1, 2].map(|axis| self.lengths[axis].map_or(0.0, |l| l * f64::from(steps[axis])))
     }
 
-    /// From `b` to `a` the shortest way \[m\].
+    /// Vector from `b` to `a` the shortest way \[m\].
     #[inline(always)]
     pub(super) fn between(&self, a: ([i32; 3], [f64; 3]), b: ([i32; 3], [f64; 3])) -> [f64; 3] {
         [0, 1, 2].map(|axis| {
@@ -151,7 +151,7 @@ pub(super) fn steps_of(image: Image) -> [i32; 3] {
     })
 }
 
-/// The image seen from the other of the two.
+/// The image seen from the other body.
 pub(super) fn mirrored(image: Image) -> Image {
     steps_of(image).iter().enumerate().fold(0, |code, (axis, &s)| code | (((-s & 3) as u8) << (2 * axis)))
 }

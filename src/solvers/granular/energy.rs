@@ -1,4 +1,4 @@
-//! Where the work goes: a ledger of energies by kind.
+//! Energy balance: a ledger of energies by kind.
 
 use super::contacts::ContactEnergy;
 use super::integrate::Tally;
@@ -6,18 +6,18 @@ use super::walls::Wall;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Energies at the start of the last step \[J\], and what was done and lost since the watch began.
+/// Energies at the start of the last step \[J\], and work and losses since the watch began.
 ///
-/// Work is the trapezoidal rule of force over displacement, as the leapfrog has it; so what remains unaccounted
-/// shrinks with the square of the time step. What moves a fixed body is not in it.
+/// Work is force times displacement by the trapezoidal rule, consistent with the leapfrog scheme, so the residual
+/// decreases with the square of the time step. Work on fixed bodies is not included.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
-    /// Kinetic, of translation and of rotation.
+    /// Kinetic energy of translation and of rotation.
     pub translation: f64,
     pub rotation: f64,
-    /// In the springs of contacts.
+    /// Energy in the springs of contacts.
     pub strain: f64,
-    /// Lost to slip, to dashpots and to local damping.
+    /// Energy lost to slip, to dashpots and to local damping.
     pub slip: f64,
     pub dashpot: f64,
     pub damping: f64,
@@ -39,7 +39,7 @@ impl Energy {
         self.slip + self.dashpot + self.damping
     }
 
-    /// What is there and was lost, less what was there and was done: 0 but for the error of the scheme \[J\].
+    /// Stored and lost energy, minus initial energy and work: 0 except for the error of the scheme \[J\].
     pub fn residual(&self) -> f64 {
         self.kinetic() + self.strain + self.lost() - self.start - self.gravity - self.walls
     }
@@ -49,14 +49,14 @@ impl Energy {
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Ledger {
     pub watched: bool,
-    /// Whether a step has been entered.
+    /// Whether a step has been recorded.
     begun: bool,
     pub now: Energy,
-    /// Second halves of what the last step did and lost: gravity, local damping.
+    /// Second halves of the work and loss of the last step: gravity, local damping.
     pending: [f64; 2],
     /// Forces and moments on walls one step ago.
     walls: Vec<(Vector3<f64>, Vector3<f64>)>,
-    /// Forces on the corners of floors that move one step ago.
+    /// Forces one step ago on the corners of floors that move.
     #[serde(default)]
     sheets: Vec<Vec<[f64; 3]>>,
 }
@@ -66,7 +66,7 @@ impl Ledger {
         *self = Ledger { watched: on, ..Ledger::default() };
     }
 
-    /// Enters what a step says, before the walls move on.
+    /// Records the results of a step, before the walls move on.
     pub fn enter(&mut self, contacts: ContactEnergy, tally: &Tally, walls: &[Wall], dt: f64) {
         self.enter_contacts(contacts, walls, dt);
         self.enter_bodies(tally);
@@ -80,7 +80,7 @@ impl Ledger {
             now.slip += contacts.slip;
             now.dashpot += contacts.dashpot;
             for ((wall, (force, moment)), (f, m)) in walls.iter().zip(&felt).zip(&self.walls) {
-                // what the wall does to the grains is the opposite of what it feels
+                // the force of the wall on the grains is opposite to its contact force
                 now.walls -= 0.5 * dt * ((force + f).dot(&wall.velocity) + (moment + m).dot(&wall.spin));
             }
             let sheets = walls.iter().filter_map(Wall::sheet).zip(&self.sheets);

@@ -1,4 +1,4 @@
-//! Why a run cannot go on: the bounds that it must keep, and what is said when it breaks one.
+//! Why a run cannot continue: the limits that it must keep, and the message if it breaks one.
 
 use super::body::BodyId;
 use super::fault::Fault;
@@ -6,16 +6,16 @@ use super::search::CellTooSmall;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Bounds that stop a run.
+/// Limits that stop a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
-    /// Overlap over the smaller radius.
+    /// Largest overlap, divided by the smaller radius.
     pub overlap: f64,
-    /// Way of a pebble in one step over its radius.
+    /// Largest displacement of a pebble in one step, divided by its radius.
     pub stride: f64,
-    /// Steps between looks at overlaps and at bodies that turn round.
+    /// Number of steps between checks of overlaps and of bodies that reverse their motion.
     pub every: u64,
-    /// Whether a run stops where its step is above the limit of its contacts and a body turns round in every step.
+    /// Whether a run stops if its step is above the limit of its contacts and a body reverses its motion in every step.
     pub growth: bool,
 }
 
@@ -25,26 +25,26 @@ impl Default for Limits {
     }
 }
 
-/// Why a run cannot go on.
+/// Why a run cannot continue.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Failure {
     /// No time step has been set.
     NoTimeStep,
-    /// Something in the bed cannot be; nothing was moved.
+    /// A value in the bed is invalid; nothing was moved.
     Fault(Fault),
-    /// The state of a body is no number any more.
+    /// The state of a body is not a finite number.
     Lost(Culprit),
-    /// A body goes too far in a step.
+    /// A body moves too far in one step.
     Stride { culprit: Culprit, share: f64 },
-    /// Two bodies are too deep in each other.
+    /// Two bodies overlap too much.
     Overlap { culprit: Culprit, share: f64 },
-    /// A body turns round in every step, and the step is above the limit of the contacts.
+    /// A body reverses its motion in every step, and the step is above the limit of the contacts.
     Growth(Culprit),
     /// Neighbours more than one cell apart: a period or a bay is too short for its bodies.
     CellTooSmall,
 }
 
-/// The body at which a failure showed, and what would have been stable.
+/// The body at which a failure was found, and a stable time step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Culprit {
     pub body: BodyId,
@@ -53,26 +53,27 @@ pub struct Culprit {
     pub step: u64,
     pub time: f64,
     pub dt: f64,
-    /// A stable time step \[s\]: the limit of the network of contacts now where growth was found, else when all was well.
+    /// A stable time step \[s\]: the present limit of the contact network if growth was found, otherwise the limit
+    /// before the failure.
     pub stable_dt: f64,
 }
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Failure::NoTimeStep => write!(f, "no time step has been set; the limit of the contacts times 0.9 is one"),
+            Failure::NoTimeStep => write!(f, "no time step has been set; take 0.9 times the limit of the contacts"),
             Failure::Fault(fault) => fault.fmt(f),
             Failure::CellTooSmall => {
-                write!(f, "a period or bay is shorter than its bodies reach; make it longer than twice the largest")
+                write!(f, "a period or bay is too short for its bodies; make it longer than twice the largest body")
             }
-            Failure::Lost(c) => write!(f, "the motion of {c} is no number any more{}", c.advice()),
+            Failure::Lost(c) => write!(f, "the motion of {c} is not a finite number{}", c.advice()),
             Failure::Stride { culprit, share } => {
                 write!(f, "{culprit} moves by {share:.2} of its radius in one step{}", culprit.advice())
             }
             Failure::Overlap { culprit, share } => {
-                write!(f, "{culprit} is {share:.2} of the smaller radius deep in its neighbour{}", culprit.advice())
+                write!(f, "{culprit} overlaps its neighbour by {share:.2} of the smaller radius{}", culprit.advice())
             }
-            Failure::Growth(c) => write!(f, "{c} turns round in every step{}", c.advice()),
+            Failure::Growth(c) => write!(f, "{c} reverses its motion in every step{}", c.advice()),
         }
     }
 }
@@ -91,11 +92,11 @@ impl Culprit {
         let (dt, stable) = (self.dt, self.stable_dt);
         if dt > stable {
             format!(
-                ": the step of {dt:.3e} s is above the stable {stable:.3e} s of its contacts; take 0.9 of that, or scale masses"
+                ": the time step of {dt:.3e} s is above the stable step of its contacts, {stable:.3e} s; take 0.9 times the stable step, or scale masses"
             )
         } else {
             format!(
-                ": the step of {dt:.3e} s is stable, so it was pushed too hard or set in too deep; start with less overlap, or push more slowly"
+                ": the time step of {dt:.3e} s is stable, so the load on the body or its first overlap is too large; start with less overlap, or load more slowly"
             )
         }
     }

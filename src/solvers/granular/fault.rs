@@ -1,4 +1,4 @@
-//! What no bed can hold: a number out of its range, and what it belongs to.
+//! Invalid values of a bed: a number out of its range, and the part that it belongs to.
 
 use super::body::BodyId;
 use super::motion::MotionError;
@@ -10,7 +10,7 @@ pub(super) const POSITIVE: &str = "a number above 0";
 pub(super) const NOT_NEGATIVE: &str = "a number from 0";
 const NUMBER: &str = "a number";
 
-/// A number that cannot be.
+/// A number out of its range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fault {
     pub of: Subject,
@@ -19,7 +19,7 @@ pub struct Fault {
     pub expected: &'static str,
 }
 
-/// What a fault belongs to.
+/// The part that a fault belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
     Body(BodyId),

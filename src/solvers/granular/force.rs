@@ -1,18 +1,18 @@
-//! The force of a contact: methods 1.1, lane by lane.
+//! The force of a contact (methods 1.1), lane by lane.
 
 use super::lanes::{Columns, Fine, Lanes, Num, Real, Row, Vector};
 use super::law::{ContactLaw, Dashpot, FrictionLimit, HertzMindlin, Linear};
 
-/// Two surfaces that may touch.
+/// Two surfaces that may be in contact.
 #[derive(Clone, Copy)]
 pub struct Meeting<L: Lanes> {
-    /// \[m\], positive where they touch.
+    /// \[m\], positive if they touch.
     pub overlap: Num<L>,
-    /// Unit vector from the second to the first.
+    /// Unit vector from the second body to the first.
     pub normal: Vector<L>,
-    /// From the centres to the contact point, mid way in the overlap \[m\].
+    /// From the centres to the contact point, which is in the middle of the overlap \[m\].
     pub arms: [Num<L>; 2],
-    /// Velocity of the first against the second, at the contact point \[m/s\].
+    /// Velocity of the first body relative to the second, at the contact point \[m/s\].
     pub velocity: Vector<L>,
     /// Mean spin about the normal \[rad/s\].
     pub twist: Num<L>,
@@ -22,25 +22,25 @@ pub struct Meeting<L: Lanes> {
     pub curvature_radius: Num<L>,
 }
 
-/// What a contact does to the first of its two; the second feels the opposite.
+/// Forces of a contact on the first of its two bodies; the forces on the second are opposite.
 #[derive(Clone, Copy)]
 pub struct ContactForces<L: Lanes> {
     pub force: Vector<L>,
-    /// Force of the shear spring, the history of the contact.
+    /// Force of the shear spring: the history of the contact.
     pub shear: Vector<L>,
     /// Force of the dashpots.
     pub damping: Vector<L>,
-    /// In the springs \[J\].
+    /// Energy in the springs \[J\].
     pub strain: Num<L>,
-    /// Lost in this step by slip \[J\].
+    /// Energy lost in this step by slip \[J\].
     pub slip: Num<L>,
 }
 
 impl<L: Lanes> Meeting<L> {
-    /// Two pebbles; `image` is what the first is shifted by when they meet across cells.
+    /// Two pebbles; `image` is the shift of the first if they are in contact across cells.
     ///
-    /// Swapping the two swaps signs and changes no bit else. The distance is an `f64`: a root in the contact's precision
-    /// and one step of Newton's iteration.
+    /// Swapping the two pebbles changes only signs, no other bit. The distance is an `f64`: a root in the precision of
+    /// the contact, and one step of Newton's iteration.
     #[inline(always)]
     pub fn between(lanes: L, a: &Columns<L>, b: &Columns<L>, image: Option<[Fine<L>; 3]>) -> Self {
         let ([ax, ay, az], [bx, by, bz]) = (a.position, b.position);
@@ -58,7 +58,7 @@ impl<L: Lanes> Meeting<L> {
         let normal = Vector([x.narrow(), y.narrow(), z.narrow()]).scale(inverse);
         let (first, second) = (a.radius.narrow(), b.radius.narrow());
         let arms = [first - half * overlap, second - half * overlap];
-        // both products are rounded, so that the order of the two does not matter
+        // both products are rounded, so that the order of the two pebbles has no effect
         let rolling = a.spin.scale(arms[0]) + b.spin.scale(arms[1]);
         Meeting {
             overlap,
@@ -72,7 +72,7 @@ impl<L: Lanes> Meeting<L> {
     }
 }
 
-/// A law made ready for one time step.
+/// A law prepared for one time step.
 #[derive(Debug, Clone, Copy)]
 pub enum Prepared {
     Linear(LinearStep),
@@ -82,7 +82,7 @@ pub enum Prepared {
 #[derive(Debug, Clone, Copy)]
 pub struct LinearStep {
     law: Linear,
-    /// Dashpots over the root of the mass, where they are ratios.
+    /// Dashpots divided by the root of the mass, if they are given as ratios.
     per_root: [f64; 2],
     dt: f64,
 }
@@ -94,7 +94,7 @@ pub struct HertzStep {
     dt: f64,
 }
 
-/// A law that can be evaluated in lanes.
+/// A law that is evaluated in lanes.
 pub trait ForceRule: Copy {
     fn force<L: Lanes>(&self, lanes: L, meeting: &Meeting<L>, shear: Vector<L>) -> ContactForces<L>;
 }
@@ -115,7 +115,7 @@ impl Prepared {
         }
     }
 
-    /// One meeting, in whatever lanes.
+    /// One meeting per lane, for any lane type.
     #[inline(always)]
     pub fn force<L: Lanes>(&self, lanes: L, meeting: &Meeting<L>, shear: Vector<L>) -> ContactForces<L> {
         match self {
@@ -125,7 +125,7 @@ impl Prepared {
     }
 }
 
-/// Stiffness and dashpots of a contact at this instant, and what its friction allows.
+/// Stiffness and dashpots of a contact at this instant, and its friction limit.
 struct Springs<L: Lanes> {
     normal: Num<L>,
     shear_stiffness: Num<L>,
@@ -135,7 +135,7 @@ struct Springs<L: Lanes> {
     pulls: bool,
     rests_in_slip: bool,
     limit: FrictionLimit,
-    /// Energy of the normal spring over its force times overlap.
+    /// Energy of the normal spring divided by its force times overlap.
     share: f64,
 }
 
@@ -205,7 +205,7 @@ impl<L: Lanes> Springs<L> {
         let pushed = self.normal - self.normal_dashpot * opening;
         let pushed = if self.pulls { pushed } else { pushed.max(zero) };
 
-        // in the step of first touch only the part of it in contact counts
+        // in the step of first contact only the part of the step in contact counts
         let sliding = meeting.velocity - normal.scale(opening);
         let closing = -(opening * dt);
         let part = (meeting.overlap / closing).where_or(meeting.overlap.less(closing), one);
@@ -223,7 +223,7 @@ impl<L: Lanes> Springs<L> {
         let damping = (normal.scale(pushed - self.normal) - sliding.scale(rubbing)).only(touching);
         let held = held.only(touching);
         let spring = self.normal.where_or(touching, zero);
-        // work of the shear spring's mean force over the slip; nothing where no shear spring is
+        // work of the mean force of the shear spring over the slip; 0 without a shear spring
         let slipped = (carried + held).dot(trial - held) / (two * self.shear_stiffness.max(tiny));
         ContactForces {
             force: normal.fma(spring, damping + held),
@@ -236,7 +236,8 @@ impl<L: Lanes> Springs<L> {
     }
 }
 
-/// Shear force carried along as the contact plane turns: into the new plane at equal size, and round its normal.
+/// Shear force moved with the rotating contact plane: into the new plane with equal magnitude, and rotated about its
+/// normal.
 #[inline(always)]
 pub fn carry<L: Lanes>(shear: Vector<L>, normal: Vector<L>, angle: Num<L>, tiny: Num<L>) -> Vector<L> {
     let flat = normal.fma(-shear.dot(normal), shear);
@@ -245,7 +246,7 @@ pub fn carry<L: Lanes>(shear: Vector<L>, normal: Vector<L>, angle: Num<L>, tiny:
     normal.cross(flat).fma(angle, flat)
 }
 
-/// A law's tangent stiffness and dashpots at a state, for critical steps.
+/// Tangent stiffness and dashpots of a law at a state, for critical time steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tangent {
     /// \[N/m\]
@@ -282,7 +283,7 @@ impl Tangent {
     }
 }
 
-/// What a contact leaves for the bodies that it acts on: force, `normal x force`, and both arms.
+/// Result of a contact for its two bodies: force, `normal x force`, and both arms.
 #[inline(always)]
 pub fn outcome<L: Lanes>(meeting: &Meeting<L>, contact: &ContactForces<L>) -> [Num<L>; 8] {
     let [fx, fy, fz] = contact.force.0;

@@ -1,4 +1,4 @@
-//! Gravity that may vary in time.
+//! Gravity, which may vary in time.
 
 use super::vector::{Vec3, scale};
 use serde::{Deserialize, Serialize};
@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 pub enum Gravity {
     /// \[m/s2\]
     Constant(Vec3),
-    /// `mean (1 + share sin(2 pi frequency t))`: a shaken floor, seen from the floor.
+    /// `mean (1 + share sin(2 pi frequency t))`: a shaken floor in the frame of the floor.
     Shaken { mean: Vec3, share: f64, frequency: f64 },
-    /// Straight between times \[s\], held beyond them; at least one.
+    /// Linear between times \[s\], constant beyond them; at least one time.
     Table { times: Vec<f64>, values: Vec<Vec3> },
 }
 
@@ -21,10 +21,10 @@ impl Default for Gravity {
 }
 
 impl Gravity {
-    /// Standard gravity downwards along z.
+    /// Standard gravity, downwards along z.
     pub const EARTH: Gravity = Gravity::Constant([0.0, 0.0, -9.81]);
 
-    /// At a time \[s\].
+    /// Gravity at a time \[s\].
     pub fn value_at(&self, time: f64) -> Vec3 {
         match self {
             Gravity::Constant(value) => *value,

@@ -1,4 +1,4 @@
-//! Newton's law for every body: forces of its contacts in a fixed order, damping, leapfrog (methods 4.2, pass 2).
+//! The equation of motion of every body: contact forces in a fixed order, damping, leapfrog (methods 4.2, pass 2).
 
 use super::body::{Body, Clump, SPHERE};
 use super::force::Outcome;
@@ -10,10 +10,10 @@ use super::vector::{Vec3, dot};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Bodies of one task. Fixed, so that threads change nothing.
+/// Bodies of one task. The number is fixed, so that the number of threads does not change the results.
 pub(super) const TASK: usize = 512;
 
-/// Where a task begins: among bodies, pebbles, clumps and blocks of contacts.
+/// First indices of a task: bodies, pebbles, clumps and blocks of contacts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Task {
     pub body: u32,
@@ -22,21 +22,21 @@ pub(super) struct Task {
     pub block: u32,
 }
 
-/// Contacts of each pebble, in an order that depends on who the neighbours are and on nothing else.
+/// Contacts of each pebble, in an order that depends only on which bodies are its neighbours.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Incidence {
-    /// First entry of each pebble, and one more.
+    /// First entry of each pebble, and one final value.
     pub start: Vec<u32>,
-    /// Twice the place of a contact, plus one for its second pebble.
+    /// Twice the index of a contact, plus one for its second pebble.
     pub entries: Vec<u32>,
 }
 
-/// What drives a step.
+/// Parameters that drive a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Drive {
-    /// Time that velocities advance by \[s\]: half a step in the first.
+    /// Time over which velocities advance \[s\]: half a step in the first step.
     pub kick: f64,
-    /// Time that positions advance by \[s\].
+    /// Time over which positions advance \[s\].
     pub dt: f64,
     pub gravity: Vec3,
     /// Local damping (Cundall).
@@ -44,19 +44,19 @@ pub(super) struct Drive {
     pub watched: bool,
 }
 
-/// What a step tells of its bodies.
+/// Results of a step over its bodies.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Tally {
-    /// Largest squared speed of a pebble \[m2/s2\], and its body's place in the bed.
+    /// Largest squared speed of a pebble \[m2/s2\], and the index of its body in the bed.
     pub fastest: (f64, u32),
-    /// A body whose motion is no number.
+    /// A body whose motion is not a finite number.
     pub lost: Option<u32>,
-    /// At the time of the forces \[J\].
+    /// Kinetic energies at the time of the forces \[J\].
     pub translation: f64,
     pub rotation: f64,
     /// Work done in this step \[J\].
     pub gravity: f64,
-    /// Lost to local damping in this step \[J\].
+    /// Energy lost to local damping in this step \[J\].
     pub damping: f64,
 }
 
@@ -74,7 +74,7 @@ impl Tally {
     }
 }
 
-/// What the bodies of some tasks have, from the first of them on.
+/// Data of the bodies of some tasks, from their first body on.
 pub(super) struct Moving<'a, R: Real> {
     pub bodies: &'a mut [Body],
     pub records: &'a mut [R::Record],
@@ -84,14 +84,14 @@ pub(super) struct Moving<'a, R: Real> {
 
 /// Bodies and pebbles of one task.
 struct Share<'a, R: Real> {
-    /// The first body among all, for what is told of it; the first pebble and the first clump.
+    /// Number of the first body among all, for the results; the first pebble and the first clump.
     at: Task,
     moving: Moving<'a, R>,
     forces: Forces<'a, R>,
     drive: &'a Drive,
 }
 
-/// Contacts, and what they do to their bodies.
+/// Contacts, and their forces on the bodies.
 pub(super) struct Forces<'a, R: Real> {
     pub incidence: &'a Incidence,
     pub outcomes: &'a [Outcome<R>],
@@ -121,10 +121,10 @@ pub(super) fn advance<R: Real>(moving: Moving<R>, tasks: &[Task], forces: Forces
     tallies.into_iter().fold(Tally::default(), Tally::and)
 }
 
-/// Entries between what is asked for and what is summed.
+/// Number of entries between the prefetched entry and the summed entry.
 const ASKED: usize = 16;
 
-/// Force and moment about its centre on a pebble: the first six of eight numbers.
+/// Force on a pebble, and moment about its centre: the first six of eight numbers.
 #[inline(always)]
 fn sum<L: Lanes>(lanes: L, pebble: usize, forces: Forces<L::Real>) -> [f64; 8] {
     let mut sums = [0.0; 8];
@@ -136,7 +136,7 @@ fn sum<L: Lanes>(lanes: L, pebble: usize, forces: Forces<L::Real>) -> [f64; 8] {
         }
         let entry = incidence.entries[at];
         let outcome = &outcomes[(entry >> 1) as usize];
-        // the second of two feels the opposite force; the moments of both have the same sign
+        // the force on the second body is opposite; the moments of both have the same sign
         let second = u64::from(entry & 1);
         let sign = f64::from_bits(1f64.to_bits() | second << 63);
         let arm = -outcome[6 + second as usize].to_f64();
@@ -155,7 +155,7 @@ impl<R: Real> Work<R> for Share<'_, R> {
         if self.drive.watched {
             told.spent = vec![[0.0; SPENT]; count];
         }
-        // bodies of a kind move together, so many as there are lanes; what is left over at the end moves last
+        // bodies of a kind move together, as many as there are lanes; the remaining bodies at the end move last
         let (mut spheres, mut composed) = (Batch::default(), Batch::default());
         let mut clump = 0;
         for body in 0..count {
@@ -188,10 +188,10 @@ impl<R: Real> Work<R> for Share<'_, R> {
     }
 }
 
-/// Bodies between what is asked for and what is looked at.
+/// Number of bodies between the prefetched body and the body in work.
 const AHEAD: usize = 32;
 
-/// Asks for a body that will move soon; each lies in two lines of the cache.
+/// Prefetches a body that will move soon; each body lies in two cache lines.
 #[inline(always)]
 fn ask_for(bodies: &[Body], place: usize) {
     if let Some(body) = bodies.get(place) {
@@ -209,7 +209,7 @@ struct Member {
     clump: usize,
 }
 
-/// Bodies that move together, one a lane.
+/// Bodies that move together, one per lane.
 #[derive(Default)]
 struct Batch {
     members: [Member; BLOCK],
@@ -229,10 +229,11 @@ impl Batch {
     }
 }
 
-/// Energies of a body in a step: translation, rotation, work of gravity, lost to damping of translation and of rotation.
+/// Energies of a body in a step: translation, rotation, work of gravity, losses to damping of translation and of
+/// rotation.
 const SPENT: usize = 5;
 
-/// What the bodies of a task tell, in their order: sums over it do not depend on the lanes.
+/// Results of the bodies of a task, in their order, so that sums do not depend on the lanes.
 struct Told {
     /// Largest squared speed of a pebble.
     speeds: Vec<f64>,
@@ -248,7 +249,7 @@ impl Told {
         }
     }
 
-    /// Bodies of no inverse mass keep their velocity, and no account.
+    /// Bodies with inverse mass 0 keep their velocity and are not in the energy account.
     #[inline(always)]
     fn spent<L: Lanes>(&mut self, batch: &Batch, inverse: Fine<L>, spent: [Fine<L>; SPENT]) {
         let inverse = column(inverse);
@@ -283,7 +284,7 @@ impl Told {
     }
 }
 
-/// A number of each lane.
+/// One number per lane.
 #[inline(always)]
 fn column<L: Lanes>(value: Fine<L>) -> [f64; BLOCK] {
     let mut column = [0.0; BLOCK];
@@ -291,14 +292,14 @@ fn column<L: Lanes>(value: Fine<L>) -> [f64; BLOCK] {
     column
 }
 
-/// Three numbers of each lane.
+/// Three numbers per lane.
 #[inline(always)]
 fn columns<L: Lanes>(value: FineVector<L>) -> [[f64; BLOCK]; 3] {
     let [x, y, z] = value.0;
     [column(x), column(y), column(z)]
 }
 
-/// Rows, a lane each, as columns.
+/// Rows, one per lane, as columns.
 #[derive(Clone, Copy)]
 struct Table<const N: usize>([[f64; BLOCK]; N]);
 
@@ -327,7 +328,7 @@ impl<const N: usize> Table<N> {
     }
 }
 
-/// Cundall's local damping: each component is smaller where it drives the motion and larger where it brakes.
+/// Cundall's local damping: each force component is reduced if it drives the motion and increased if it brakes it.
 #[inline(always)]
 fn damp<L: Lanes>(
     acting: FineVector<L>,
@@ -336,7 +337,7 @@ fn damp<L: Lanes>(
     drive: &Drive,
 ) -> FineVector<L> {
     let zero = per_inertia.alike(0.0);
-    // the velocity of the time of the force, by its own acceleration
+    // velocity at the time of the force, by the acceleration of the force itself
     let half = per_inertia.alike(0.5 * drive.kick) * per_inertia;
     let (velocity, acting, mut lost) = (velocity.0, acting.0, [zero; 3]);
     for c in 0..3 {
@@ -347,14 +348,14 @@ fn damp<L: Lanes>(
     FineVector(lost)
 }
 
-/// What contacts, gravity and damping do to the velocity of bodies.
+/// Effect of contacts, gravity and damping on the velocity of bodies.
 struct Kick<L: Lanes> {
     velocity: FineVector<L>,
-    /// Energy of translation, work of gravity, loss; nothing where nobody watches.
+    /// Energy of translation, work of gravity, loss; not computed unless energy is watched.
     spent: [Fine<L>; 3],
 }
 
-/// The velocity that gravity, damping and the force of its contacts give a body.
+/// The velocity of a body after gravity, damping and its contact forces.
 #[inline(always)]
 fn kick<L: Lanes>(
     (before, inverse, mass): (FineVector<L>, Fine<L>, Fine<L>),
@@ -384,7 +385,7 @@ impl<R: Real> Share<'_, R> {
     #[inline(always)]
     fn spheres<L: Lanes<Real = R>>(&mut self, lanes: L, batch: &Batch, told: &mut Told) {
         let Share { moving, drive, .. } = self;
-        // state is kept in values until all is known: to read back what was just written costs more than the arithmetic
+        // state is kept in values until all is known: reading back values just written costs more than the arithmetic
         let (mut states, mut sums, mut places) = (Table::<9>::new(), Table::<8>::new(), Table::<3>::new());
         for (l, member) in batch.members().iter().enumerate() {
             let body = &moving.bodies[member.body];
@@ -409,7 +410,7 @@ impl<R: Real> Share<'_, R> {
         if drive.watched {
             let mean = spin - change.scale(zero.alike(0.5 * drive.dt));
             let none = zero;
-            // what does not turn has no energy of it
+            // a body that does not rotate has no rotational energy
             let rotation = (zero.alike(0.5) / per_inertia * mean.dot(mean)).where_less(zero, per_inertia, none);
             let turning = (lost.dot(mean) * zero.alike(drive.dt)).where_less(zero, per_inertia, none);
             told.spent(batch, inverse, [translation, rotation, gravity, damping, turning]);
@@ -449,7 +450,7 @@ impl<R: Real> Share<'_, R> {
         let zero = mass.alike(0.0);
         let (mut force, mut moment) = (FineVector([zero; 3]), FineVector([zero; 3]));
         for k in 0..most {
-            // a lane without such a pebble adds nothing
+            // a lane without such a pebble adds 0
             let (mut sums, mut arms) = (Table::<8>::new(), Table::<3>::new());
             for (l, member) in batch.members().iter().enumerate() {
                 if k < member.pebbles {
@@ -466,7 +467,7 @@ impl<R: Real> Share<'_, R> {
         let (turning, own) = (shapes.three(lanes, 7), shapes.three(lanes, 10));
         let mut lost = FineVector([zero; 3]);
         if drive.damping > 0.0 {
-            // the sign of the spin decides; the acceleration of half a step moves it by little
+            // the sign of the spin decides; the acceleration over half a step changes it only a little
             lost = damp(moment, turning, zero, drive);
             moment = moment + lost;
         }
@@ -479,7 +480,7 @@ impl<R: Real> Share<'_, R> {
             told.spent(batch, inverse, [translation, rotation, gravity, damping, turned]);
         }
         let centre = shapes.three(lanes, 0) + velocity.scale(mass.alike(drive.dt));
-        // a clump that keeps its spin turns like a sphere of unit inertia
+        // a clump that keeps its spin rotates like a sphere of unit inertia
         let free = own.0[0] + own.0[1] + own.0[2];
         let momentum = spin.where_less(zero, free, turning);
         let own = own.where_less(zero, free, FineVector([mass.alike(1.0); 3]));
@@ -508,7 +509,7 @@ impl<R: Real> Share<'_, R> {
             let speed = own.dot(own).where_less(mass.alike(k as f64), counts, zero);
             fastest = speed.where_less(fastest, speed, fastest);
         }
-        // a maximum forgets what is no number
+        // a maximum ignores values that are not numbers
         let of_centre = velocity.dot(velocity);
         told.speeds(batch, fastest + of_centre * zero);
         let (velocity, spin, centre, turning) = (columns(velocity), columns(spin), columns(centre), columns(turning));

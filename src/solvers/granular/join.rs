@@ -1,4 +1,5 @@
-//! Cells side by side along an open x: copies of one, or of several that were packed from other seeds (methods 1.7).
+//! Cells side by side along an open x: copies of one cell, or of several cells packed from different seeds (methods
+//! 1.7).
 
 use super::bed::Bed;
 use super::body::{Body, BodyId, SPHERE};
@@ -8,23 +9,24 @@ use super::failure::Failure;
 use super::lanes::Real;
 use super::walls::Kept;
 
-/// Where the bodies of one bay begin, and which of them are there.
+/// First body of a bay, and the bodies that are kept.
 struct Bay {
     cell: usize,
-    /// New number of each body of the cell; `None` for one that is left out.
+    /// New number of each body of the cell; `None` if it is left out.
     numbers: Vec<Option<u32>>,
 }
 
 impl<R: Real> Bed<R> {
-    /// Beds of one period of the same length along x, side by side: bay `b` holds cell `order[b]` and stands `first + b` lengths
-    /// along. The ends are open, and no longer meet.
+    /// Beds of one period of the same length along x, side by side: bay `b` holds cell `order[b]` and lies `first + b`
+    /// lengths along x. The ends are open and not connected.
     ///
-    /// Contacts go on with their histories inside a bay, and into the next one where that is the same cell; where it is
-    /// another, bodies may overlap. Bodies that `kept` (bay, body of the cell) denies are left out. Walls, laws, gravity and
-    /// damping are those of the first cell.
+    /// Contacts continue with their histories inside a bay, and into the next bay if that holds the same cell; between
+    /// different cells bodies may overlap. Bodies for which `kept` (bay, body of the cell) is false are left out.
+    /// Walls, laws, gravity and damping are taken from the first cell.
     ///
     /// # Panics
-    /// If a cell is not one period along x, their lengths differ, a wall ends, or `order` is empty or names no cell.
+    /// If a cell is not one period along x, the lengths differ, a wall has an end, or `order` is empty or names no
+    /// cell.
     pub fn side_by_side(
         cells: &mut [Bed<R>],
         order: &[usize],
@@ -54,7 +56,7 @@ impl<R: Real> Bed<R> {
         self.domain.period(0).filter(|_| self.domain.cells(0) == Some(1)).expect("one period along x")
     }
 
-    /// Copies the bodies of a cell into a bay, and gives their new numbers.
+    /// Copies the bodies of a cell into a bay, and returns their new numbers.
     fn take_over(
         &mut self,
         cells: &[Bed<R>],
@@ -63,7 +65,7 @@ impl<R: Real> Bed<R> {
         kept: impl Fn(BodyId) -> bool,
     ) -> Vec<Option<u32>> {
         let cell = &cells[number];
-        // bodies of one cell are equal in all its bays, and unlike those of any other cell
+        // bodies of one cell are equal in all its bays, and different from the bodies of any other cell
         let before: usize = cells[..number].iter().map(Bed::len).sum();
         let copied = |place: &u32| {
             let body = &cell.bodies[*place as usize];
@@ -78,7 +80,7 @@ impl<R: Real> Bed<R> {
         cell.index.iter().map(copied).collect()
     }
 
-    /// Adds a copy of a body of another bed, known by its place there, with the next number.
+    /// Adds a copy of a body of another bed, given by its index there, with the next number.
     pub(super) fn copy_body(&mut self, from: &Bed<R>, place: u32) -> &mut Body {
         let (mut body, pebbles) = (from.bodies[place as usize], self.owner.len() as u32);
         let id = self.bodies.len() as u32;
@@ -99,7 +101,7 @@ impl<R: Real> Bed<R> {
         &mut self.bodies[id as usize]
     }
 
-    /// Takes all bodies out of the lists in which they stand; walls and histories stay.
+    /// Removes all bodies from their lists; walls and histories stay.
     pub(super) fn clear_bodies(&mut self) {
         self.records.clear();
         self.bodies.clear();
@@ -110,14 +112,14 @@ impl<R: Real> Bed<R> {
     }
 }
 
-/// Histories of contacts that go on.
+/// Histories of contacts that continue.
 fn histories<R: Real>(cells: &[Bed<R>], bays: &[Bay]) -> (Vec<Carried<R>>, Vec<Kept<R>>) {
     let (mut carried, mut touches) = (Vec::new(), Vec::new());
     for (number, cell) in cells.iter().enumerate() {
         let (between, walls) = (cell.carried_with_images(), cell.kept());
         for (here, bay) in bays.iter().enumerate().filter(|(_, bay)| bay.cell == number) {
             for (near, image) in &between {
-                // the lower stands in this bay, and its neighbour as many steps away as the image says
+                // the lower body is in this bay, and its neighbour as many bays away as the image says
                 let there = here as i64 - i64::from(super::domain::steps_of(*image)[0]);
                 let other = usize::try_from(there).ok().and_then(|there| bays.get(there));
                 let Some(other) = other.filter(|other| other.cell == number) else { continue };

@@ -1,7 +1,7 @@
-//! Contact laws: how two surfaces push and rub on each other.
+//! Contact laws: normal and shear forces between two surfaces.
 //!
-//! Conventions are those of PFC's linear model (springs with dashpots beside them, no moment, shear by increments in the
-//! turning contact plane) and of Hertz and Mindlin without partial slip.
+//! Conventions are the conventions of PFC's linear model (springs with parallel dashpots, no moment, shear by
+//! increments in the rotating contact plane) and of Hertz and Mindlin without partial slip.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -52,16 +52,16 @@ pub enum Dashpot {
     Constant { normal: f64, shear: f64 },
 }
 
-/// What dashpots may do; PFC's `dp_mode` 0 to 3.
+/// Limits of dashpots; PFC's `dp_mode` 0 to 3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum DashpotMode {
-    /// They always act, and may pull.
+    /// Dashpots always act, and may pull.
     Full,
-    /// The normal force as a whole does not pull.
+    /// The total normal force does not pull.
     NoTension,
-    /// The shear dashpot rests while the contact slips.
+    /// The shear dashpot does not act while the contact slips.
     RestInSlip,
-    /// Neither pull nor resist slip: what ballast does.
+    /// Both `NoTension` and `RestInSlip`: the mode for ballast.
     #[default]
     NoTensionRestInSlip,
 }
@@ -76,24 +76,25 @@ impl DashpotMode {
     }
 }
 
-/// The normal force that friction is a share of.
+/// The normal force that limits friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum FrictionLimit {
-    /// The spring's, as in PFC and YADE.
+    /// The force of the spring, as in PFC and YADE.
     #[default]
     Spring,
-    /// The magnitude of spring and dashpot together, as in LIGGGHTS and LAMMPS.
+    /// The magnitude of spring and dashpot forces together, as in LIGGGHTS and LAMMPS.
     Total,
 }
 
-/// Springs of two bodies one behind the other: the stiffness of their contact (PFC's inheritance).
+/// Springs of two bodies in series: the stiffness of their contact (PFC's inheritance).
 pub fn in_series(first: f64, second: f64) -> f64 {
-    // one that gives way freely leaves nothing
+    // a body of zero stiffness gives zero
     if first == 0.0 || second == 0.0 { 0.0 } else { first * second / (first + second) }
 }
 
 impl HertzMindlin {
-    /// The law between two elastic solids given by Young's modulus \[Pa\] and Poisson's ratio; `f64::INFINITY` is rigid.
+    /// The law between two elastic solids given by Young's modulus \[Pa\] and Poisson's ratio; `f64::INFINITY` is
+    /// rigid.
     pub fn between(first: (f64, f64), second: (f64, f64), friction: f64, restitution: f64) -> HertzMindlin {
         let normal = |(young, poisson): (f64, f64)| (1.0 - poisson * poisson) / young;
         let shear = |(young, poisson): (f64, f64)| 2.0 * (2.0 - poisson) * (1.0 + poisson) / young;
@@ -108,13 +109,14 @@ impl HertzMindlin {
         }
     }
 
-    /// Share of critical damping that gives the restitution, for any speed.
+    /// Share of critical damping that gives the restitution, at any speed.
     ///
-    /// With Tsuji's dashpot and y = d^(5/4) in place of the overlap d, speed against y is that of a linear oscillator of the
-    /// same ratio z, and y + 2 z v = 0 where spring and dashpot together push no more (Antypov and Elliott 2011, EPL 94,
-    /// 50004). So the linear closed forms hold: to the end of the overlap `e = exp(-pi z / sqrt(1 - z^2))`; to the end of the
-    /// push, where dashpots do not pull, `e = exp(-2 z acos(z) / sqrt(1 - z^2))` (Schwager and Pöschel 2007, Granular
-    /// Matter 9, 465-469, written shorter; z may be above 1 there).
+    /// With Tsuji's dashpot and y = d^(5/4) instead of the overlap d, the speed as a function of y is the speed of a
+    /// linear oscillator of the same ratio z, and y + 2 z v = 0 when the sum of spring and dashpot force becomes zero
+    /// (Antypov and Elliott 2011, EPL 94, 50004). So the linear closed forms hold. To the end of the overlap
+    /// `e = exp(-pi z / sqrt(1 - z^2))`; to the end of the push, if dashpots do not pull,
+    /// `e = exp(-2 z acos(z) / sqrt(1 - z^2))` (Schwager and Pöschel 2007, Granular Matter 9, 465-469, written shorter;
+    /// z may be above 1 there).
     pub fn damping_ratio(&self) -> f64 {
         let lost = -self.restitution.ln();
         let pulling = lost / std::f64::consts::PI.hypot(lost);
@@ -122,13 +124,13 @@ impl HertzMindlin {
     }
 }
 
-/// Solves `2 z acos(z) / sqrt(1 - z^2) = lost` for z. The left side grows and bends down, so that Newton's steps from
+/// Solves `2 z acos(z) / sqrt(1 - z^2) = lost` for z. The left side is increasing and concave, so Newton's steps from
 /// `below` never go beyond the root.
 fn ratio_without_tension(lost: f64, below: f64) -> f64 {
     let mut z = below;
     for _ in 0..60 {
         let (x, square) = (1.0 - z, 1.0 - z * z);
-        // acos(z) / sqrt(1 - z^2) and its slope; the first terms of the series where both are 0
+        // acos(z) / sqrt(1 - z^2) and its slope; near z = 1 the first terms of the series
         let (angle, slope) = if x.abs() < 1e-4 {
             (1.0 + x / 3.0 + 2.0 * x * x / 15.0, -1.0 / 3.0 - 4.0 * x / 15.0)
         } else {
@@ -144,16 +146,16 @@ fn ratio_without_tension(lost: f64, below: f64) -> f64 {
     z
 }
 
-/// What bodies of one surface are made of; a pair's law follows from two of them.
+/// Material properties of the bodies of one surface; the law of a pair follows from two surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Surface {
-    /// Stiffness of the body; two in series make a contact \[N/m\].
+    /// Stiffness of the body; two bodies in series make a contact \[N/m\].
     pub normal_stiffness: f64,
     /// \[N/m\]
     pub shear_stiffness: f64,
-    /// The smaller of two counts.
+    /// Coefficient of friction; the smaller of two applies.
     pub friction: f64,
-    /// Share of critical damping, normal and shear; the smaller of two counts.
+    /// Share of critical damping, normal and shear; the smaller of two applies.
     pub damping: [f64; 2],
     pub mode: DashpotMode,
 }
@@ -175,7 +177,7 @@ impl Surface {
     }
 }
 
-/// A number of a law that cannot be.
+/// A number of a law out of its range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LawError {
     pub quantity: &'static str,
@@ -192,7 +194,7 @@ impl fmt::Display for LawError {
 impl std::error::Error for LawError {}
 
 impl ContactLaw {
-    /// Every number that cannot be, in the order of the fields.
+    /// Every number out of its range, in the order of the fields.
     pub fn faults(&self) -> Vec<LawError> {
         const POSITIVE: &str = "a number above 0";
         const NOT_NEGATIVE: &str = "a number from 0";
@@ -237,7 +239,7 @@ pub struct ContactLaws {
 }
 
 impl ContactLaws {
-    /// One law for everything; surface 0 is all there is.
+    /// One law for all contacts; surface 0 is the only surface.
     pub fn single(law: ContactLaw) -> ContactLaws {
         ContactLaws { surfaces: 1, pairs: vec![law] }
     }
@@ -268,7 +270,7 @@ impl ContactLaws {
         &self.pairs[self.class(first, second) as usize]
     }
 
-    /// Changes every law in place: friction off and on again, dashpots for packing.
+    /// Changes every law in place, for example friction or the dashpots of packing.
     pub fn change(&mut self, change: impl FnMut(&mut ContactLaw)) {
         self.pairs.iter_mut().for_each(change);
     }

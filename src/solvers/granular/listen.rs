@@ -1,10 +1,10 @@
-//! What a person who waits answers to a word of how far a bed is: go on, or stop.
+//! The answer of a caller to a progress report: continue or stop.
 
 use std::ops::ControlFlow;
 
-/// The answer of a function that hears how far a bed is. One that answers nothing lets it go on.
+/// The answer of a function that receives progress reports. A function that returns nothing lets the work continue.
 pub trait Answer {
-    /// A break ends the work on the bed, which is lost.
+    /// A break ends the work on the bed; the work done is lost.
     fn flow(self) -> ControlFlow<()>;
 }
 
@@ -20,7 +20,7 @@ impl Answer for ControlFlow<()> {
     }
 }
 
-/// Fails with an error where the answer was to stop.
+/// Fails with an error if the answer was to stop.
 pub(super) fn unless_stopped<E>(answer: ControlFlow<()>, stopped: E) -> Result<(), E> {
     match answer {
         ControlFlow::Continue(()) => Ok(()),

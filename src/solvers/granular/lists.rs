@@ -1,28 +1,29 @@
-//! The age of the lists of what may touch: how far they reach, and where everything was when they were made.
+//! The age of the contact lists: their reach, and all positions at the time when they were made.
 
 use super::integrate::Task;
 use super::motion::Pose;
 use super::vector::Vec3;
 
-/// When lists were made, and for how long they are good.
+/// When lists were made, and how long they are valid.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lists {
     /// Something was added.
     pub outdated: bool,
-    /// How far pairs may be apart and still be listed \[m\].
+    /// Largest distance of listed pairs \[m\].
     pub skin: f64,
-    /// A reach that a user wants \[m\].
+    /// A reach given by the user \[m\].
     pub fixed_skin: Option<f64>,
-    /// Bound of what two bodies have come nearer since \[m\].
+    /// Upper bound of the approach of two bodies since then \[m\].
     pub travel: f64,
     pub step: u64,
-    /// Lists made.
+    /// Number of lists made.
     pub count: u64,
-    /// How far pebbles are from the origins of planes \[m\]: what a plane that turns sweeps.
+    /// Largest distance of pebbles from the origins of planes \[m\]: a rotating plane moves by angle times this
+    /// distance.
     pub extent: f64,
-    /// Where tasks begin, and one more.
+    /// First indices of the tasks, and one final value.
     pub tasks: Vec<Task>,
-    /// Where pebbles, walls were \[m\].
+    /// Positions of pebbles and walls when the lists were made \[m\].
     pub reference: Vec<[f32; 3]>,
     pub origin: Vec<Vec3>,
     pub walls: Vec<Pose>,

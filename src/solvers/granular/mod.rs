@@ -1,8 +1,8 @@
 //! Grains: spheres and clumps in three dimensions by the discrete element method.
 //!
-//! A [`Bed`] holds bodies and walls. Each [`Bed::step`] computes every contact once, in lanes, and then sums for every
-//! body the forces on it, in a fixed order: the same bits for any number of threads, any width of lanes and any reach of
-//! the neighbour lists.
+//! A [`Bed`] holds bodies and walls. Each [`Bed::step`] computes every contact once, in lanes, and then sums the forces
+//! on every body in a fixed order. The results are the same bits for any number of threads, any width of lanes and any
+//! reach of the neighbour lists.
 //!
 //! ```
 //! use trackbed::solvers::granular::*;

@@ -1,8 +1,8 @@
-//! How a wall moves: at rest, at a given velocity, along a table, to and fro, after a force that it should feel, or as a body
-//! with a mass under a force that is applied to it.
+//! Motion of a wall: at rest, at a given velocity, by a table, harmonic, controlled to a given contact force, or as a
+//! body with a mass under an applied force.
 //!
-//! Velocities belong to a whole step, from `time` to `time + dt`, as a leapfrog scheme takes them: x += v dt. For given
-//! motions they are the mean over the step, so that the wall stands where it should after every step, whatever dt is.
+//! Velocities belong to a whole step, from `time` to `time + dt`, as in a leapfrog scheme: x += v dt. For given motions
+//! they are the mean over the step, so that the position of the wall is exact after every step for any dt.
 
 mod error;
 mod push;
@@ -15,16 +15,16 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Where a wall stands and how it is turned against its own frame.
+/// Position and rotation of a wall.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// Place of the frame's origin, m.
+    /// Position of the origin of the frame, m.
     pub position: Vector3<f64>,
-    /// Unit quaternion w, x, y, z that turns the frame's axes into those of space.
+    /// Unit quaternion w, x, y, z that turns the axes of the frame into the axes of space.
     pub orientation: [f64; 4],
 }
 
-/// What contacts did to a wall at the start of a step.
+/// Contact forces on a wall at the start of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Felt {
     /// Sum of the contact forces on the wall, N.
@@ -33,9 +33,9 @@ pub struct Felt {
     pub stiffness: f64,
     /// Sum of their normal dashpots, N s/m.
     pub dashpot: f64,
-    /// Velocity of the wall in the step before, which the dashpots have felt, m/s.
+    /// Velocity of the wall in the step before, on which the dashpot forces depend, m/s.
     pub velocity: Vector3<f64>,
-    /// How many there are.
+    /// Number of contacts.
     pub contacts: usize,
 }
 
@@ -44,13 +44,13 @@ pub struct Felt {
 pub enum WallMotion {
     #[default]
     Fixed,
-    /// Moves as a guide says in every step, see [`super::Bed::guided_step`].
+    /// Moves as a guide prescribes in every step, see [`super::Bed::guided_step`].
     Guided,
-    /// Constant velocity (m/s) of the frame's origin and angular velocity (rad/s) about it, in the axes of space.
+    /// Constant velocity (m/s) of the origin of the frame and angular velocity (rad/s) about it, in the axes of space.
     Velocity { linear: Vector3<f64>, angular: Vector3<f64> },
-    /// Velocity (m/s) straight between times (s, growing); the first value holds before, the last one after.
+    /// Velocity (m/s) linear between times (s, increasing); the first value holds before, the last value after.
     Table { times: Vec<f64>, velocities: Vec<Vector3<f64>> },
-    /// To and fro: amplitude sin(2 pi frequency t + phase) along the unit axis, from where the wall stands at t = 0.
+    /// Harmonic: amplitude sin(2 pi frequency t + phase) along the unit axis, from the position of the wall at t = 0.
     Harmonic {
         axis: Vector3<f64>,
         /// m.
@@ -60,35 +60,35 @@ pub enum WallMotion {
         /// rad.
         phase: f64,
     },
-    /// Moves along the unit axis until the contact force on the wall along it is `force`.
+    /// Moves along the unit axis until the contact force on the wall along this axis is `force`.
     ///
-    /// v = (gain (F - force) + c v')/(k dt + c), k and c the normal stiffness and dashpots of all contacts, v' the speed of
-    /// the step before: F relaxes by the factor 1 - gain a step on springs and dashpots without mass. So it approaches
-    /// from one side for gains up to 1, overshoots above and grows above 2. Bodies with mass follow later than springs:
-    /// 0.5 is the usual gain, less is safer. After PFC's servo control, which has c = 0: where c is above k dt, the plate
-    /// then throws its own dashpots to and fro.
+    /// v = (gain (F - force) + c v')/(k dt + c); k and c are the normal stiffness and dashpots of all contacts, v' is
+    /// the speed of the step before. On springs and dashpots without mass, the difference F - force decreases by the
+    /// factor 1 - gain per step. So F approaches from one side for gains up to 1, overshoots above 1 and grows above 2.
+    /// Bodies with mass follow later than springs: 0.5 is the usual gain, a smaller gain is safer. Based on PFC's servo
+    /// control, which has c = 0: if c is above k dt, the dashpots would make such a plate oscillate.
     Servo {
         axis: Vector3<f64>,
-        /// N; above 0 where contacts push the wall along the axis.
+        /// N; above 0 if contacts push the wall along the axis.
         force: f64,
-        /// m/s. Also the speed of a wall without contact, towards where the force will come from.
+        /// m/s. Also the speed of a wall without contact, towards the side from which the force will come.
         speed_limit: f64,
         #[serde(default = "usual_gain")]
         gain: f64,
     },
-    /// Moves along the unit axis as a body with a mass, and does not turn: `m dv/dt = F`, F the sum of weight, push and contact
-    /// forces along the axis.
+    /// Moves along the unit axis as a body with a mass, without rotation: `m dv/dt = F`; F is the sum of weight,
+    /// applied force and contact forces along the axis.
     ///
-    /// Leapfrog, as grains move: v = v' + F dt / m. A wall that is told so at a time has its speed of then as v', half a step
-    /// early. It swings on its contacts: dt stays well below sqrt(m / k) of their stiffness.
+    /// Leapfrog, as for grains: v = v' + F dt / m. A wall that gets this motion during a run takes its present speed as
+    /// v', half a step early. It oscillates on its contacts: dt must stay well below sqrt(m / k) of their stiffness.
     Loaded {
         axis: Vector3<f64>,
         /// kg.
         mass: f64,
         /// Along the axis, N.
         weight: f64,
-        /// Local damping after Cundall, as grains have it: F loses this share of itself where it drives, and gains it where
-        /// it brakes.
+        /// Local damping after Cundall, as for grains: F is reduced by this share if it drives the motion, and
+        /// increased by this share if it brakes the motion.
         damping: f64,
         push: Push,
     },
@@ -142,12 +142,12 @@ impl WallMotion {
     pub fn velocity(&self, time: f64, dt: f64, felt: &Felt) -> (Vector3<f64>, Vector3<f64>) {
         let linear = match self {
             WallMotion::Fixed => Vector3::zeros(),
-            // what nobody changes goes on
+            // a wall that no guide changes keeps its velocity
             WallMotion::Guided => felt.velocity,
             WallMotion::Velocity { linear, angular } => return (*linear, *angular),
             WallMotion::Table { times, velocities } => mean_of_table(times, velocities, time, dt),
             WallMotion::Harmonic { axis, amplitude, frequency, phase } => {
-                // sin b - sin a = 2 cos((a + b)/2) sin((b - a)/2) keeps its digits where a and b are close
+                // sin b - sin a = 2 cos((a + b)/2) sin((b - a)/2) is accurate if a and b are close
                 let half = TAU * frequency * dt / 2.0;
                 axis * (amplitude * 2.0 * (TAU * frequency * time + phase + half).cos() * half.sin() / dt)
             }
@@ -174,7 +174,7 @@ impl WallMotion {
     }
 }
 
-/// Mean over the step of a velocity that is straight between times.
+/// Mean over the step of a velocity that is linear between times.
 fn mean_of_table(times: &[f64], velocities: &[Vector3<f64>], time: f64, dt: f64) -> Vector3<f64> {
     let end = time + dt;
     let after = times.partition_point(|t| *t <= time);
@@ -206,7 +206,7 @@ fn check_table(times: &[f64], velocities: &[Vector3<f64>]) -> Result<(), MotionE
     let same = times.len() == velocities.len();
     require(same, "number of velocities of a table", velocities.len() as f64, "as many as there are times")?;
     times.iter().try_for_each(|t| require(t.is_finite(), name, *t, "finite numbers"))?;
-    times.windows(2).try_for_each(|pair| require(pair[1] > pair[0], name, pair[1], "each after the one before"))?;
+    times.windows(2).try_for_each(|pair| require(pair[1] > pair[0], name, pair[1], "each above the time before it"))?;
     velocities.iter().try_for_each(|v| finite("velocities of a table", v))
 }
 
@@ -225,18 +225,18 @@ impl Default for Pose {
 }
 
 impl Pose {
-    /// Fails where the position is not finite or the quaternion not of length 1.
+    /// Fails if the position is not finite or the length of the quaternion is not 1.
     pub fn check(&self) -> Result<(), MotionError> {
         finite("position of a wall", &self.position)?;
         let length = self.orientation.iter().map(|q| q * q).sum::<f64>().sqrt();
         require((length - 1.0).abs() <= 1e-12, "quaternion of a wall", length, "of length 1")
     }
 
-    /// Moves and turns over a step of `dt` (s), exactly for velocities (m/s, rad/s, axes of space) that stay the same.
+    /// Moves and rotates over a step of `dt` (s), exactly for constant velocities (m/s, rad/s, axes of space).
     pub fn advance(&mut self, linear: &Vector3<f64>, angular: &Vector3<f64>, dt: f64) {
         self.position += linear * dt;
         let angle = angular.norm() * dt;
-        // a wall that does not turn keeps its bits
+        // a wall that does not rotate keeps its bits
         if angle == 0.0 {
             return;
         }
@@ -246,19 +246,19 @@ impl Pose {
         self.orientation = turned.map(|q| q / length);
     }
 
-    /// A point of space, m, in the wall's frame.
+    /// A point of space, m, in the frame of the wall.
     #[inline]
     pub fn to_frame(&self, point: &Vector3<f64>) -> Vector3<f64> {
         let [w, x, y, z] = self.orientation;
         turn([w, -x, -y, -z], &(point - self.position))
     }
 
-    /// A point of the wall's frame, m, in space.
+    /// A point in the frame of the wall, m, in space.
     pub fn to_space(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.position + self.direction_to_space(point)
     }
 
-    /// A direction of the wall's frame in space.
+    /// A direction in the frame of the wall, in space.
     #[inline]
     pub fn direction_to_space(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         turn(self.orientation, direction)
@@ -278,7 +278,7 @@ fn product([aw, ax, ay, az]: [f64; 4], [bw, bx, by, bz]: [f64; 4]) -> [f64; 4] {
 /// v + 2 w (q x v) + 2 q x (q x v).
 #[inline]
 fn turn([w, x, y, z]: [f64; 4], v: &Vector3<f64>) -> Vector3<f64> {
-    // most walls do not turn
+    // most walls do not rotate
     if x == 0.0 && y == 0.0 && z == 0.0 {
         return *v;
     }

@@ -1,12 +1,13 @@
 //! The order of bodies in memory.
 //!
-//! Contacts read both their bodies, so what touches should lie close together. Along a strip it does: what touches a body is
-//! at most a slice away, which the cache still holds, and only the few contacts between strips reach far. Curves that fill
-//! space (Morton) have eight times as many of those; 100,000 spheres step a tenth faster in strips.
+//! Contacts read both their bodies, so bodies in contact should be close in memory. In strips they are: a neighbour is
+//! at most one slice away, which the cache still holds, and only the few contacts between strips are far apart.
+//! Space-filling curves (Morton) have eight times as many distant contacts; a step of 100,000 spheres is a tenth faster
+//! with strips.
 
 use super::vector::{Vec3, sub};
 
-/// Strips along the longest side of the bed, and along each of them thin slices.
+/// Strips along the longest side of the bed, each divided into thin slices.
 pub(super) struct Strips {
     least: Vec3,
     /// Axes, the longest first.
@@ -17,9 +18,9 @@ pub(super) struct Strips {
     sides: [f64; 2],
 }
 
-/// Bodies across a strip: two slices of so many squared, with all that belongs to them, fit into a cache of 1 MB.
+/// Number of bodies across a strip: two slices of this number squared, with all their data, fit into a cache of 1 MB.
 const ACROSS: f64 = 24.0;
-/// Thickness of a slice over the mean distance of bodies.
+/// Thickness of a slice divided by the mean distance of bodies.
 const SLICE: f64 = 1.0;
 
 impl Strips {
@@ -34,18 +35,18 @@ impl Strips {
         let extent = sub(most, least);
         let mut axes = [0, 1, 2];
         axes.sort_by(|&a, &b| extent[b].total_cmp(&extent[a]));
-        // a bed that is flat has a spacing, too
+        // a flat bed must have a spacing, too
         let spacing = extent.map(|e| e.max(1e-3 * extent[axes[0]])).iter().product::<f64>() / count;
         let spacing = spacing.cbrt().max(f64::MIN_POSITIVE);
-        // the bed of a track is wide and flat, and one strip all the same: contacts between strips are what costs
+        // the bed of a track is wide and flat, and still one strip: contacts between strips cost most
         let one = extent[axes[1]].max(spacing) * extent[axes[2]].max(spacing) <= (ACROSS * spacing).powi(2);
         let strips = |axis: usize| if one { 1.0 } else { (extent[axis] / (ACROSS * spacing)).ceil().max(1.0) };
-        // a little more than the whole, or the last body would be a strip of its own
+        // slightly more than the whole, otherwise the last body would be a separate strip
         let side = |axis: usize| 1.001 * extent[axis].max(spacing) / strips(axis);
         Strips { least, axes, spacing, sides: [side(axes[1]), side(axes[2])] }
     }
 
-    /// Strip, slice and row of a place, as a number to sort by.
+    /// Strip, slice and row of a position, as a number for sorting.
     pub fn key(&self, place: Vec3) -> u64 {
         let [along, wide, high] = self.axes.map(|axis| place[axis] - self.least[axis]);
         let part = |length: f64, of: f64, bits: u32| ((length / of).max(0.0) as u64).min((1 << bits) - 1);

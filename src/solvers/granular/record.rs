@@ -1,8 +1,8 @@
-//! What a contact reads of a pebble: one record, in one or two cache lines.
+//! The data of a pebble that its contacts read: one record, in one or two cache lines.
 
 use bytemuck::{Pod, Zeroable};
 
-/// A pebble as its contacts see it. Positions are offsets in the pebble's cell of the domain.
+/// A pebble as its contacts read it. Positions are offsets in the cell of the pebble.
 pub trait Record<R>: Pod + Send + Sync {
     /// A pebble at rest at the origin of its cell.
     fn new(radius: f64, mass: f64) -> Self;
@@ -16,14 +16,15 @@ pub trait Record<R>: Pod + Send + Sync {
     fn spin(&self) -> [R; 3];
     /// \[m\]
     fn radius(&self) -> f64;
-    /// Mass of the body that the pebble belongs to, without what mass scaling added: ratios of damping refer to it \[kg\].
+    /// Mass of the body of the pebble, without the mass added by mass scaling: damping ratios refer to it \[kg\].
     fn mass(&self) -> R;
     fn set_mass(&mut self, mass: R);
 }
 
 /// Motion in single precision: 64 bytes, one cache line.
 ///
-/// Position and radius stay `f64`: the overlap of a contact is a hundred thousandth of a radius and is their difference.
+/// Position and radius stay `f64`: the overlap of a contact is their difference, about a hundred thousandth of a
+/// radius.
 #[repr(C, align(64))]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Compact {

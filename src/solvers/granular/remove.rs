@@ -1,4 +1,4 @@
-//! Bodies are taken out of a bed; the others keep their contacts with their histories.
+//! Removes bodies from a bed; the other bodies keep their contacts with their histories.
 
 use super::bed::Bed;
 use super::body::BodyId;
@@ -9,7 +9,8 @@ use super::lanes::Real;
 use super::walls::Kept;
 
 impl<R: Real> Bed<R> {
-    /// Takes out the bodies that `goes` names, and gives how many they were. The others are numbered anew, in the order of before.
+    /// Removes the bodies for which `goes` is true, and returns their number. The others are renumbered in the same
+    /// order.
     pub fn remove(&mut self, goes: impl Fn(BodyId) -> bool) -> Result<usize, Failure> {
         self.refresh()?;
         let before = self.clone();
@@ -19,7 +20,7 @@ impl<R: Real> Bed<R> {
                 return None;
             }
             let body = self.copy_body(&before, *place);
-            // ranks stay apart from those of bodies that are added later
+            // ranks differ from those of bodies that are added later
             body.rank = body.id;
             Some(body.id)
         };
@@ -49,7 +50,7 @@ mod tests {
 
     const RADIUS: f64 = 0.03;
 
-    /// A row of spheres that touch, on a floor, with friction and at rest but for one that falls on the last.
+    /// A row of touching spheres on a floor, with friction, at rest except for one that falls on the last.
     fn row() -> Bed<f64> {
         let law = ContactLaw::Linear(Linear {
             normal_stiffness: 1e6,

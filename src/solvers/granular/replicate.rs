@@ -8,10 +8,10 @@ use super::failure::Failure;
 use super::lanes::{BLOCK, Real};
 
 impl<R: Real> Bed<R> {
-    /// `count` copies along x of a bed of one period, with velocities and the histories of contacts.
+    /// `count` copies along x of a bed with one period, with velocities and contact histories.
     ///
-    /// Copies of a body keep its rank, and stand at the same offset of their bay. So they go on bit by bit as the original
-    /// would, until something treats one bay differently. Planes are shared; a wall that ends is copied into every bay.
+    /// Copies of a body keep its rank, and have the same offset in their bay. So they continue bit by bit like the
+    /// original until one bay is treated differently. Planes are shared; a wall that ends is copied into every bay.
     /// Bodies are numbered copy by copy: body `i` of copy `c` is `c len + i`.
     ///
     /// # Panics
@@ -29,7 +29,7 @@ impl<R: Real> Bed<R> {
         let mut carried = Vec::new();
         for (near, image) in self.carried_with_images() {
             for bay in 0..bays {
-                // the lower stands in this bay, and its neighbour as many steps away as the image says
+                // the lower body is in this bay, and its neighbour as many bays away as the image says
                 let other = (bay - steps_of(image)[0]).rem_euclid(bays) as u32;
                 let (low, high) =
                     ((bay as u32 * bodies + near.low.0, near.low.1), (other * bodies + near.high.0, near.high.1));
@@ -82,7 +82,7 @@ impl<R: Real> Bed<R> {
         }
     }
 
-    /// Gives the first number of each wall's copies.
+    /// Returns the first number of the copies of each wall.
     fn copy_walls(&self, copy: &mut Bed<R>, count: u32) -> Vec<u32> {
         copy.walls.clear();
         let mut first = Vec::new();
@@ -98,7 +98,7 @@ impl<R: Real> Bed<R> {
         first
     }
 
-    /// Histories, and by how many cells the lower of the two is shifted.
+    /// Histories, and the number of cells by which the lower of the two bodies is shifted.
     pub(super) fn carried_with_images(&self) -> Vec<(Carried<R>, super::domain::Image)> {
         let contacts = &self.contacts;
         (0..contacts.len())

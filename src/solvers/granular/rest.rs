@@ -1,8 +1,8 @@
-//! Steps until a bed is at rest: the one loop of all that wait for it, a lift under its plate, a plate load test, sleepers,
-//! a specimen, cells side by side.
+//! Steps until a bed is at rest. All callers that wait for rest use this loop: a lift under its plate, a plate load
+//! test, sleepers, a specimen, cells side by side.
 //!
-//! Forces are looked at every so many steps. A bed is at rest when some looks in a row find its forces in balance, and what
-//! presses on it as strong as it should be. One that is not at rest in time is an error of whoever waits.
+//! Forces are checked at regular intervals. A bed is at rest if several checks in a row find its forces in balance and
+//! the applied force close to its target. A bed that is not at rest in time is an error of the caller.
 
 use super::bed::Bed;
 use super::failure::Failure;
@@ -10,46 +10,47 @@ use super::lanes::Real;
 use super::measure::unbalance;
 use super::snapshot::Snapshot;
 
-/// When a bed counts as at rest, and for how long it is waited for.
+/// When a bed counts as at rest, and the longest waiting time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Criterion {
-    /// Largest force out of balance over the forces that act, mean over all bodies.
+    /// Limit of the force out of balance divided by the acting forces, mean over all bodies.
     pub unbalance: f64,
-    /// Largest share by which what presses on the bed may miss its force.
+    /// Limit of the relative difference between the applied force and its target.
     pub missed: f64,
-    /// Steps between two looks.
+    /// Steps between two checks.
     pub every: u64,
-    /// Looks in a row that must find rest.
+    /// Number of checks in a row that must find rest.
     pub looks: usize,
     /// Time after which the bed counts as restless, s.
     pub longest: f64,
-    /// Whether the first look comes before the first step; a bed at rest for which no time has passed needs no other look.
+    /// Whether the first check comes before the first step; a bed at rest for which no time has passed needs no further
+    /// check.
     pub look_first: bool,
 }
 
-/// What a look has found.
+/// The result of a check.
 #[derive(Debug, Clone)]
 pub(super) struct Look {
     pub snapshot: Snapshot,
-    /// Force out of balance over the forces that act, mean over all bodies.
+    /// Force out of balance divided by the acting forces, mean over all bodies.
     pub unbalance: f64,
-    /// Share by which what presses on the bed misses its force.
+    /// Relative difference between the applied force and its target.
     pub missed: f64,
-    /// Time of the wait so far, s.
+    /// Waiting time so far, s.
     pub time: f64,
 }
 
-/// How far on its way to rest something is: what is out of balance fades about as exp(-t).
+/// Progress towards rest: the force out of balance decreases about as exp(-t).
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Fading {
-    /// Logarithm of how far from rest the first look found it.
+    /// Logarithm of the distance from rest at the first check.
     first: Option<f64>,
-    /// What was told last: it never goes back.
+    /// The last reported share: it never decreases.
     told: f64,
 }
 
 impl Fading {
-    /// The share of the way that is done where it is so many times as restless as what counts as rest.
+    /// Progress as a share of 1; `times` is the present unrest divided by the limit for rest.
     pub fn share(&mut self, times: f64) -> f64 {
         let far = times.ln().max(0.0);
         self.told = self.told.max(1.0 - (far / *self.first.get_or_insert(far.max(1.0))).min(1.0));
@@ -57,38 +58,38 @@ impl Fading {
     }
 }
 
-/// A bed that somebody waits for, with what presses on it.
+/// A bed that a caller waits for, with the load on it.
 pub(super) trait Waiting<R: Real> {
     type Error;
 
     fn bed(&mut self) -> &mut Bed<R>;
 
-    /// Does the steps up to the next look.
+    /// Does the steps up to the next check.
     fn advance(&mut self, steps: u64) -> Result<(), Failure>;
 
-    /// Share by which what presses on the bed misses its force; 0 where nothing presses.
+    /// Relative difference between the applied force and its target; 0 without an applied force.
     fn missed(&self) -> f64 {
         0.0
     }
 
-    /// Hears of every look, and may end the wait.
+    /// Receives every check, and may end the wait.
     fn hear(&mut self, _look: &Look) -> Result<(), Self::Error> {
         Ok(())
     }
 
-    /// Fails where it is in vain to wait on for a bed that is not at rest.
+    /// Fails if waiting longer for a bed that is not at rest is useless.
     fn worth_waiting(&self, _look: &Look) -> Result<(), Self::Error> {
         Ok(())
     }
 
-    /// The error of a bed that is not at rest in time; `look` is the last one.
+    /// The error of a bed that is not at rest in time; `look` is the last check.
     fn restless(&self, look: &Look) -> Self::Error;
 
     /// The error of a bed that cannot do its steps.
     fn failed(&self, failure: Failure) -> Self::Error;
 }
 
-/// Runs a bed until it is at rest, and gives the look that found it so. The wait counts from the time `since`, s.
+/// Runs a bed until it is at rest, and returns the check that found rest. The wait counts from the time `since`, s.
 pub(super) fn until_rest<R: Real, W: Waiting<R>>(
     waiting: &mut W,
     criterion: &Criterion,
@@ -129,17 +130,17 @@ mod tests {
 
     const RADIUS: f64 = 0.03;
 
-    /// A sphere over a floor, and what was done with it.
+    /// A sphere over a floor, and a log of the calls.
     struct Fall {
         bed: Bed<f64>,
         steps: u64,
         looks: usize,
-        /// Looks after which nobody waits any more.
+        /// Number of checks after which the wait ends.
         patience: usize,
     }
 
     impl Fall {
-        /// From so many of the overlaps that carry the sphere's weight; below 0 it does not touch.
+        /// Starts with this many times the overlap that carries the weight of the sphere; below 0 there is no contact.
         fn new(overlaps: f64) -> Fall {
             let (normal, density) = (1e6, 2700.0);
             let law = ContactLaw::Linear(Linear {

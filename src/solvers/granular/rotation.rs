@@ -1,32 +1,33 @@
 //! One step of the rotation of a rigid body, for a leapfrog: angular momentum at half steps, attitude at full steps.
 //!
-//! In the principal frame of the body the free motion is `p' = p × Ω`, `Ω = p/I`, with p = Rᵀ L. The implicit midpoint rule
-//! keeps every quadratic invariant (Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.2), so energy and size of p
-//! among them, and is its own reverse:
+//! In the principal frame of the body the free motion is `p' = p × Ω`, `Ω = p/I`, with p = Rᵀ L. The implicit midpoint
+//! rule keeps every quadratic invariant (Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.2), for example
+//! the energy and the magnitude of p, and is symmetric in time:
 //!
 //! ```text
 //! p̄ = p + (Δt/2) p̄ × Ω,    Ω = p̄/I,    R <- R cay(Δt Ω)
 //! ```
 //!
-//! The rotation cay(Δt Ω), by the angle 2 atan(Δt |Ω|/2) about Ω, is the quaternion (1, Δt Ω/2) but for its length. L itself
-//! is not touched, so it is kept to the last bit. Angles come out short by a share of (Δt |Ω|)²/12: 1e-11 in a bed.
+//! The rotation cay(Δt Ω), by the angle 2 atan(Δt |Ω|/2) about Ω, is the quaternion (1, Δt Ω/2) after normalisation. L
+//! itself does not change, so it is exact to the last bit. Angles are too small by a share of (Δt |Ω|)²/12: 1e-11 in a
+//! bed.
 
 use super::lanes::{Fine, FineVector, Lanes, Matrix, Plain};
 
-/// Largest number of rounds: beyond, Δt |Ω| is above 1, where no scheme of second order means anything.
+/// Largest number of iterations. Beyond it, Δt |Ω| is above 1, and no second-order scheme is accurate.
 const ROUNDS: usize = 60;
 
-/// A round that changes p̄ by no more than this share is the last: what it leaves is smaller by another Δt |Ω|/2.
+/// The iteration ends if p̄ changes by no more than this share: the remaining error is smaller by another Δt |Ω|/2.
 const SETTLED: f64 = 1e-15;
 
-/// Turns a body by one free step of `dt` (s), and gives the angular velocity (rad/s, in the world) of that step: the body turns
-/// about it by the angle 2 atan(dt |ω|/2).
+/// Rotates a body by one free step of `dt` (s), and returns the angular velocity (rad/s, in the world) of that step:
+/// the body rotates about it by the angle 2 atan(dt |ω|/2).
 ///
-/// `attitude` is the unit quaternion (w, x, y, z) that takes the principal frame to the world; it stays one to rounding. (The
-/// coordinates of nalgebra's quaternions are (x, y, z, w).)
-/// `momentum` is the angular momentum in the world, kg m²/s, at the middle of the step; `inverse_inertia` the inverse principal
-/// moments, 1/(kg m²). Free motion keeps its energy to rounding while dt |ω| is below 1/2. Only `+ - * /` and roots: the same
-/// bits on every machine.
+/// `attitude` is the unit quaternion (w, x, y, z) from the principal frame to the world; its length stays 1 to
+/// rounding. (The coordinates of nalgebra's quaternions are (x, y, z, w).) `momentum` is the angular momentum in the
+/// world, kg m²/s, at the middle of the step; `inverse_inertia` are the inverse principal moments, 1/(kg m²). Free
+/// motion keeps its energy to rounding while dt |ω| is below 1/2. Only `+ - * /` and roots are used: the result is the
+/// same bits on every machine.
 pub fn turn(attitude: &mut [f64; 4], momentum: &[f64; 3], inverse_inertia: &[f64; 3], dt: f64) -> [f64; 3] {
     let lane = One::new();
     let before = attitude.map(|part| Fine::splat(lane, part));
@@ -36,7 +37,7 @@ pub fn turn(attitude: &mut [f64; 4], momentum: &[f64; 3], inverse_inertia: &[f64
     spin.0.map(|part| part.value[0])
 }
 
-/// The rotation of a unit quaternion (w, x, y, z), as rows: it takes the principal frame to the world.
+/// The rotation matrix of a unit quaternion (w, x, y, z), as rows: from the principal frame to the world.
 pub fn matrix(attitude: &[f64; 4]) -> [[f64; 3]; 3] {
     let rows = matrix_in_lanes(&attitude.map(|part| Fine::splat(One::new(), part))).0;
     rows.map(|row| row.0.map(|part| part.value[0]))
@@ -44,7 +45,7 @@ pub fn matrix(attitude: &[f64; 4]) -> [[f64; 3]; 3] {
 
 type One = Plain<f64, 1>;
 
-/// [`turn`] for a body a lane, whose matrix is known: attitudes after the step, and spins of it.
+/// [`turn`] for one body per lane, with known matrices: attitudes after the step, and spins of the step.
 #[inline(always)]
 pub(super) fn turn_in_lanes<L: Lanes>(
     attitude: &[Fine<L>; 4],
@@ -67,7 +68,7 @@ pub(super) fn turn_in_lanes<L: Lanes>(
     ([p * shorten, q * shorten, r * shorten, s * shorten], axes.apply(spin))
 }
 
-/// [`matrix`] for a body a lane.
+/// [`matrix`] for one body per lane.
 #[inline(always)]
 pub(super) fn matrix_in_lanes<L: Lanes>(attitude: &[Fine<L>; 4]) -> Matrix<L> {
     let [w, x, y, z] = *attitude;
@@ -82,8 +83,8 @@ pub(super) fn matrix_in_lanes<L: Lanes>(attitude: &[Fine<L>; 4]) -> Matrix<L> {
     ])
 }
 
-/// Ω at the middle of the step, in the principal frame. Every round gains a factor of dt |Ω|/2 or so: two or three do in a bed. Each
-/// lane has its own last round, whatever the others do.
+/// Ω at the middle of the step, in the principal frame. Every iteration reduces the error by a factor of about dt
+/// |Ω|/2: two or three iterations in a bed. Each lane ends its iteration independently of the other lanes.
 #[inline(always)]
 fn mid_step_spin<L: Lanes>(start: FineVector<L>, inverse_inertia: FineVector<L>, half: Fine<L>) -> FineVector<L> {
     let settled = half.alike(SETTLED * SETTLED) * start.dot(start);
@@ -92,7 +93,7 @@ fn mid_step_spin<L: Lanes>(start: FineVector<L>, inverse_inertia: FineVector<L>,
     for _ in 0..ROUNDS {
         let next = start + middle.cross(spin).scale(half);
         let further = next - middle;
-        // what has settled stays
+        // a converged lane does not change
         let before = change;
         change = further.dot(further).where_less(settled, before, before);
         middle = next.where_less(settled, before, middle);
@@ -119,7 +120,7 @@ mod tests {
     }
 
     impl Top {
-        /// A body whose spin in its principal frame is given, in an attitude that is not simple.
+        /// A body with a given spin in its principal frame, in a general attitude.
         fn new(inertia: [f64; 3], spin: [f64; 3]) -> Self {
             let attitude = [0.5, -0.5, 0.1, 0.7]; // of length 1
             let p = [inertia[0] * spin[0], inertia[1] * spin[1], inertia[2] * spin[2]];
@@ -246,7 +247,8 @@ mod tests {
         }
     }
 
-    /// The axis of a symmetric top goes round L at the rate |L|/I, the top about its axis at (1/J - 1/I) L·e besides.
+    /// The axis of a symmetric top rotates about L at the rate |L|/I, and the top about its axis at (1/J - 1/I) L·e in
+    /// addition.
     fn symmetric_top_error(dt: f64) -> f64 {
         let (across, along) = (1.3, 0.8);
         let mut top = Top::new([across, across, along], [0.4, 0.0, 0.9]);

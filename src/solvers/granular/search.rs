@@ -1,24 +1,24 @@
-//! Which pebbles are near each other: grids of cells, one for each class of size.
+//! Search for neighbouring pebbles: grids of cells, one for each size class.
 //!
-//! A pebble looks in its own grid and in those of larger pebbles, so that a grading of wide range costs no more than a
-//! narrow one.
+//! A pebble searches its own grid and the grids of larger pebbles, so that a wide grading costs no more than a narrow
+//! grading.
 
 use super::domain::{Domain, Image};
 use super::vector::{Vec3, dot};
 use rayon::prelude::*;
 
-/// Pebbles that one task looks up. Fixed, so that threads change nothing.
+/// Pebbles that one task looks up. The number is fixed, so that the number of threads does not change the results.
 pub(super) const CHUNK: usize = 1024;
-/// Grids at most; each halves the cells of the one before.
+/// Largest number of grids; each halves the cells of the grid before.
 const LEVELS: usize = 5;
 
-/// A pebble as the search sees it.
+/// The data of a pebble for the search.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Seen {
     pub cell: [i32; 3],
     pub offset: Vec3,
     pub radius: f64,
-    /// Pebbles of one body do not meet.
+    /// Pebbles of one body do not touch each other.
     pub body: u32,
 }
 
@@ -27,21 +27,22 @@ pub(super) struct Seen {
 pub(super) struct Pair {
     pub first: u32,
     pub second: u32,
-    /// What the first is shifted by.
+    /// Shift of the first pebble.
     pub image: Image,
 }
 
-/// Two pebbles near each other that are more than a cell of the domain apart, or near each other both ways round a period.
+/// Two neighbouring pebbles that are more than a cell of the domain apart, or that are neighbours in both directions of
+/// a period.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CellTooSmall;
 
-/// One class of size: pebbles by cells.
+/// One size class: pebbles by cells.
 struct Grid {
     origin: Vec3,
     size: Vec3,
     dims: [i64; 3],
     periodic: [bool; 3],
-    /// Largest radius here \[m\].
+    /// Largest radius in this class \[m\].
     largest: f64,
     start: Vec<u32>,
     pebbles: Vec<u32>,
@@ -160,7 +161,7 @@ impl Grid {
                 (high - low).max(0.0)
             }
         });
-        // a body that flew far away must not cost the memory of the way there
+        // a body that flew far away must not cost memory for all cells up to it
         let (mut side, enough) = (size, 4096.0 + 8.0 * members.len() as f64);
         while extent.iter().map(|e| (e / side).floor().max(0.0) + 1.0).product::<f64>() > enough {
             side *= 1.26;

@@ -1,8 +1,9 @@
-//! A floor that gives way: bilinear facets of a regular grid, whose corners move with what lies below.
+//! A deformable floor: bilinear facets of a regular grid; its corners move with the soil below.
 //!
-//! A grain touches the facet under it. The contact point lies on the facet, at the weights N of its corners, so that
-//! `v = sum N_i v_i` is the velocity that the grain meets and `f_i = N_i F` what the corners feel: force, moment and power are the
-//! same on both sides (methods 3). Weights count from the corners' places at the start: displacements are small against a facet.
+//! A grain touches the facet under it. The contact point lies on the facet, with the weights N of the corners. So
+//! `v = sum N_i v_i` is the velocity of the floor at the grain and `f_i = N_i F` are the forces on the corners: force,
+//! moment and power are equal on both sides (methods 3). Weights are computed from the initial positions of the
+//! corners: displacements are small compared with a facet.
 
 use super::shape::Touch;
 use super::vector::{Vec3, add, dot, norm, scale, sub};
@@ -12,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// The corners of a floor, in the order of their grid: along x first.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sheet {
-    /// Lines of the grid along x and y, from the origin of the wall, growing, m.
+    /// Lines of the grid along x and y, from the origin of the wall, increasing, m.
     lines: [Vec<f64>; 2],
     corners: Vec<Corner>,
     /// Forces of the contacts at the start of the last step, N, and sums of their normal stiffnesses by `N^2`, N/m.
@@ -22,20 +23,20 @@ pub struct Sheet {
     listed: Vec<Vec3>,
 }
 
-/// A corner of a floor that moves.
+/// A corner of a deformable floor.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Corner {
-    /// From its place at the start, m.
+    /// Displacement from the initial position, m.
     pub displacement: Vec3,
-    /// Velocity in the step in which it moves on, m/s.
+    /// Velocity in the next step, m/s.
     pub velocity: Vec3,
 }
 
-/// A facet, and the weights of its corners at a place.
+/// A facet, and the weights of its corners at a position.
 type Weights = [(usize, f64); 4];
 
 impl Sheet {
-    /// A flat floor at rest over a grid; `None` where it has no facet.
+    /// A flat floor at rest over a grid; `None` if the grid has no facet.
     pub fn flat(x: Vec<f64>, y: Vec<f64>) -> Option<Sheet> {
         let grows = |lines: &[f64]| lines.len() > 1 && lines.windows(2).all(|pair| pair[0] < pair[1]);
         if !(grows(&x) && grows(&y)) {
@@ -56,7 +57,7 @@ impl Sheet {
         &self.corners
     }
 
-    /// Its corners, to be moved.
+    /// Its corners, for moving them.
     pub fn corners_mut(&mut self) -> &mut [Corner] {
         &mut self.corners
     }
@@ -66,18 +67,19 @@ impl Sheet {
         &self.forces
     }
 
-    /// What the contacts of the last step add to the stiffness of each corner, N/m.
+    /// Stiffness that the contacts of the last step add to each corner, N/m.
     pub fn stiffnesses(&self) -> &[f64] {
         &self.stiffnesses
     }
 
-    /// Where the corner of a number lies in the plan, from the origin of the wall, m.
+    /// Position of a corner in the plan, from the origin of the wall, m.
     pub fn place(&self, corner: usize) -> [f64; 2] {
         let columns = self.lines[0].len();
         [self.lines[0][corner % columns], self.lines[1][corner / columns]]
     }
 
-    /// The facet over which a place lies and its share along x and y; beyond the border the nearest one, from 0 to 1.
+    /// The facet over which a position lies, and the share of the position along x and y, from 0 to 1; beyond the
+    /// border the nearest facet.
     fn facet(&self, place: Vec3) -> ([usize; 2], [f64; 2], [f64; 2]) {
         let along = |axis: usize| {
             let lines = &self.lines[axis];
@@ -100,7 +102,7 @@ impl Sheet {
         [(a, (1.0 - u) * (1.0 - v)), (b, u * (1.0 - v)), (c, (1.0 - u) * v), (d, u * v)]
     }
 
-    /// Where a sphere of radius `reach` touches the facet under its centre, m from the origin of the wall.
+    /// Contact point of a sphere of radius `reach` with the facet under its centre, m from the origin of the wall.
     pub(super) fn touch(&self, centre: Vec3, reach: f64) -> Option<Touch> {
         let (cell, [u, v], [along, across]) = self.facet(centre);
         let [a, b, c, d] = self.corner_numbers(cell).map(|corner| self.corners[corner].displacement[2]);
@@ -112,19 +114,19 @@ impl Sheet {
         (distance < reach).then_some(Touch { normal: upward, distance, feature: 0 })
     }
 
-    /// Velocity of the floor at a place, m/s.
+    /// Velocity of the floor at a position, m/s.
     pub(super) fn velocity_at(&self, place: Vec3) -> Vec3 {
         let parts = self.weights(place).map(|(corner, weight)| scale(self.corners[corner].velocity, weight));
         parts.into_iter().fold([0.0; 3], add)
     }
 
-    /// Forgets the forces of the step before.
+    /// Clears the forces of the step before.
     pub(super) fn unload(&mut self) {
         self.forces.fill([0.0; 3]);
         self.stiffnesses.fill(0.0);
     }
 
-    /// Takes a force (N) of a contact of such a stiffness (N/m) at a place.
+    /// Adds the force (N) of a contact with a stiffness (N/m) at a position.
     pub(super) fn load(&mut self, place: Vec3, force: Vec3, stiffness: f64) {
         for (corner, weight) in self.weights(place) {
             self.forces[corner] = add(self.forces[corner], scale(force, weight));
@@ -132,12 +134,12 @@ impl Sheet {
         }
     }
 
-    /// Notes where it is: the lists reach from there.
+    /// Stores the present displacements, from which the reach of the lists counts.
     pub(super) fn remember(&mut self) {
         self.listed = self.corners.iter().map(|corner| corner.displacement).collect();
     }
 
-    /// The most that a corner has moved since the lists were made, m.
+    /// The largest displacement of a corner since the lists were made, m.
     pub(super) fn moved(&self) -> f64 {
         let moves =
             self.corners.iter().zip(&self.listed).map(|(corner, before)| norm(sub(corner.displacement, *before)));
@@ -149,7 +151,8 @@ impl Sheet {
         self.corners.iter().map(|corner| norm(corner.velocity)).fold(0.0, f64::max)
     }
 
-    /// Work that the floor does on the grains in a step of `dt` (s), by the mean of the forces of now and `before` (N), J.
+    /// Work of the floor on the grains in a step of `dt` (s), by the mean of the present forces and the forces `before`
+    /// (N), J.
     pub(super) fn work(&self, before: &[Vec3], dt: f64) -> f64 {
         let parts = self.corners.iter().zip(self.forces.iter().zip(before));
         let power = parts.map(|(corner, (now, before))| dot(add(*now, *before), corner.velocity));
@@ -157,8 +160,8 @@ impl Sheet {
     }
 }
 
-/// The interval between growing lines in which `x` lies, the first or the last beyond them. Lines of a mesh are nearly even: it is found from
-/// where it would be if they were.
+/// The interval between increasing lines that contains `x`; beyond the lines, the first or the last. Lines of a mesh
+/// are nearly even, so the search starts at the interval for even lines.
 #[inline(always)]
 fn interval(lines: &[f64], x: f64) -> usize {
     let last = lines.len() - 2;
@@ -236,7 +239,8 @@ mod tests {
         })
     }
 
-    /// Momentum of grains and corners stays to round-off, and so does that about an axis; the energy of both to the second order.
+    /// The momentum of grains and corners is constant to rounding, and so is the angular momentum about an axis; the
+    /// energy of both to second order.
     #[test]
     fn force_moment_and_power_are_the_same_on_both_sides() {
         let run = |dt: f64| {

@@ -1,4 +1,4 @@
-//! The bed at an instant: every contact that touches, and kinetic energy at the same time as positions.
+//! The bed at an instant: every contact with a force, and the kinetic energy at the time of the positions.
 
 use super::bed::Bed;
 use super::body::{BodyId, SPHERE};
@@ -10,10 +10,10 @@ use super::record::Record;
 use super::vector::{Vec3, add, norm, scale, sub};
 use super::walls::WallId;
 
-/// Who takes part in a contact.
+/// A party of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Party {
-    /// A body, and which of its pebbles.
+    /// A body, and the index of its pebble.
     Body(BodyId, u16),
     Wall(WallId),
 }
@@ -30,16 +30,16 @@ impl Party {
 /// A contact that carries a force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactState {
-    /// A body, and of two the one that was made first.
+    /// A body; of two bodies the one that was created first.
     pub first: Party,
     pub second: Party,
-    /// On the first \[N\].
+    /// Force on the first party \[N\].
     pub force: [f64; 3],
     /// Unit vector from the second to the first.
     pub normal: [f64; 3],
     /// \[m\]
     pub overlap: f64,
-    /// Where it is, beside the first \[m\].
+    /// Contact point, close to the first party \[m\].
     pub point: [f64; 3],
     /// From the centroid of the second body, or from the contact point of a wall, to the centroid of the first \[m\].
     pub branch: [f64; 3],
@@ -58,7 +58,7 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// Mean number of contacts between pebbles that a body has: twice their count over the bodies.
+    /// Mean number of pebble contacts per body: twice the number of contacts divided by the number of bodies.
     pub fn coordination(&self, bodies: usize) -> f64 {
         let pairs = self.contacts.iter().filter(|c| c.second.body().is_some()).count();
         2.0 * pairs as f64 / bodies.max(1) as f64
@@ -71,7 +71,7 @@ impl Snapshot {
 }
 
 impl<R: Real> Bed<R> {
-    /// Takes a snapshot. The motion goes on afterwards as if nobody had looked, bit by bit.
+    /// Takes a snapshot. The motion continues afterwards bit by bit as without a snapshot.
     pub fn snapshot(&mut self) -> Result<Snapshot, Failure> {
         self.with_forces(|bed| {
             let tally = bed.half_kick();
@@ -86,7 +86,7 @@ impl<R: Real> Bed<R> {
         Ok((tally.translation, tally.rotation))
     }
 
-    /// How many contacts carry a force now: between pebbles, and with walls.
+    /// Number of contacts that carry a force now: between pebbles, and with walls.
     pub fn touching(&mut self) -> Result<(usize, usize), Failure> {
         self.with_forces(|bed| {
             let pairs = (0..bed.contacts.len()).filter(|&place| bed.overlap(place).is_some()).count();
@@ -94,7 +94,7 @@ impl<R: Real> Bed<R> {
         })
     }
 
-    /// Computes the forces of the present state, looks, and puts back what that changed.
+    /// Computes the forces of the present state, calls `look`, and restores the state.
     fn with_forces<T>(&mut self, look: impl FnOnce(&mut Self) -> T) -> Result<T, Failure> {
         if self.dt == 0.0 {
             return Err(Failure::NoTimeStep);
@@ -113,8 +113,8 @@ impl<R: Real> Bed<R> {
         Ok(seen)
     }
 
-    /// What half a kick under the present forces would give, without moving anything. Bodies go by their numbers: the sums are
-    /// the same, bit by bit, however they lie in memory.
+    /// The result of half a kick under the present forces, without moving anything. Bodies are taken by their numbers:
+    /// the sums are the same, bit by bit, for any order in memory.
     fn half_kick(&mut self) -> integrate::Tally {
         let drive = Drive {
             kick: if self.fresh { 0.0 } else { 0.5 * self.dt },
@@ -169,7 +169,7 @@ impl<R: Real> Bed<R> {
             }
         }
         self.add_bonds(&mut states);
-        // in an order that depends on who meets only: sums over contacts must not know how lists were made
+        // in an order that depends only on the parties: sums over contacts must not depend on how lists were made
         states.sort_by_key(|contact: &ContactState| {
             let walled = contact.second.body().is_none();
             (walled, contact.first, contact.second)
@@ -177,8 +177,8 @@ impl<R: Real> Bed<R> {
         states
     }
 
-    /// The contact at this place of the list. Its first party is the lower one: which of two pebbles a list names first is chance, and
-    /// another after a resume.
+    /// The contact at this index of the list. Its first party is the lower one, because the order of two pebbles in a
+    /// list is arbitrary and may change after a resume.
     fn contact_state(&self, place: usize) -> ContactState {
         let (a, b) = (self.contacts.first[place], self.contacts.second[place]);
         let (image, outcome) = (self.domain.shift(self.contacts.image[place]), &self.contacts.outcomes[place]);
@@ -192,7 +192,7 @@ impl<R: Real> Bed<R> {
             second: self.party(b),
             force: scale(force_of(outcome), sign),
             normal,
-            // from places: an arm in single precision knows a hundredth of a small overlap
+            // from positions: an arm in single precision is accurate only to a hundredth of a small overlap
             overlap: self.records[a as usize].radius() + self.records[b as usize].radius() - distance,
             point: sub(self.place_of(a), scale(normal, arm.to_f64())),
             branch: add(sub(self.centre(a), self.centre(b)), scale(image, sign)),
@@ -208,7 +208,7 @@ impl<R: Real> Bed<R> {
         self.records[pebble as usize].position()
     }
 
-    /// Centroid of a pebble's body, in the body's cell \[m\].
+    /// Centroid of the body of a pebble, in the cell of the body \[m\].
     pub(super) fn centre(&self, pebble: u32) -> Vec3 {
         let body = &self.bodies[self.owner[pebble as usize] as usize];
         if body.clump == SPHERE { self.offset(pebble) } else { self.clumps[body.clump as usize].centre }
@@ -219,7 +219,7 @@ impl<R: Real> Bed<R> {
         self.domain.place(body.cell, self.offset(pebble))
     }
 
-    /// Number of contacts listed, those that fill up blocks included: what a step computes.
+    /// Number of listed contacts, including unused places of blocks: the contacts that a step computes.
     pub fn listed_contacts(&self) -> usize {
         debug_assert_eq!(self.contacts.len() % BLOCK, 0);
         self.contacts.len()

@@ -1,4 +1,4 @@
-//! One time step: forces, motion, walls, and a look whether all is well.
+//! One time step: forces, motion, walls, and checks.
 
 use super::bed::Bed;
 use super::contacts::{ContactEnergy, Surroundings, shifts};
@@ -13,22 +13,22 @@ use super::timings::Timings;
 use super::walls::{Wall, WallId, approach};
 use std::time::Instant;
 
-/// Tasks that one thread does before it moves their bodies: what fits into its own cache.
+/// Number of tasks that one thread computes before it moves their bodies: their data fit into its cache.
 const ALONE: usize = 3;
-/// Tasks a thread that several do: threads wait for each other twice a window.
+/// Number of tasks per thread if several threads work: threads wait for each other twice per window.
 const TOGETHER: usize = 12;
 
-/// Walls between the forces of a step and their motion.
+/// Access to the walls between the computation of forces and the motion.
 pub struct Guided<'a> {
     walls: &'a mut [Wall],
-    /// At which the forces stand, s.
+    /// Time of the forces, s.
     pub time: f64,
     /// Length of the step, s.
     pub dt: f64,
 }
 
 impl Guided<'_> {
-    /// What the contacts do to a wall.
+    /// Contact forces on a wall.
     pub fn felt(&self, wall: WallId) -> &Felt {
         &self.walls[wall.0 as usize].felt
     }
@@ -48,26 +48,28 @@ impl Guided<'_> {
         self.walls[wall.0 as usize].spin = spin.into();
     }
 
-    /// The corners of a floor: their forces stand, and where they go is to be set.
+    /// The corners of a floor: their forces are computed, and their motion must be set.
     pub fn sheet(&mut self, wall: WallId) -> Option<&mut Sheet> {
         self.walls[wall.0 as usize].sheet.as_deref_mut()
     }
 }
 
 impl<R: Real> Bed<R> {
-    /// Does `count` steps, or as many as go well.
+    /// Does `count` steps, or stops at the first failure.
     pub fn run(&mut self, count: u64) -> Result<(), Failure> {
-        // from within the pool: a thread that is not of it would sleep and wake four times a step, half of the time of a small bed
+        // from within the pool: a thread outside it would sleep and wake four times per step, half of the time of a
+        // small bed
         rayon::scope(|_| (0..count).try_for_each(|_| self.step()))
     }
 
-    /// Does one step of the leapfrog: `v += F/m dt`, `x += v dt`. The first kick is half a step long, so that velocities
-    /// stand half a step before positions from then on.
+    /// Does one step of the leapfrog: `v += F/m dt`, `x += v dt`. The first kick is half a step long, so that
+    /// velocities are half a step before positions from then on.
     pub fn step(&mut self) -> Result<(), Failure> {
         self.guided_step(|_| Ok(()))
     }
 
-    /// The same, where `guide` hears the forces on walls at the start of the step and says how those that it guides move in it.
+    /// The same as [`Bed::step`], with a guide: `guide` reads the forces on walls at the start of the step and sets the
+    /// motion of the guided walls.
     pub fn guided_step<E: From<Failure>>(
         &mut self,
         guide: impl FnOnce(&mut Guided<'_>) -> Result<(), E>,
@@ -100,10 +102,11 @@ impl<R: Real> Bed<R> {
         Ok(self.look()?)
     }
 
-    /// Computes every force, and moves the bodies where there is a drive.
+    /// Computes every force, and moves the bodies if `drive` is given.
     ///
-    /// Contacts belong to the task of the earlier of their two bodies. So once the contacts of some tasks are done, so are
-    /// those of their bodies, and nothing later reads what these bodies were: they move while all of it is in the cache.
+    /// Contacts belong to the task of the earlier of their two bodies. So once the contacts of some tasks are computed,
+    /// all contacts of their bodies are computed, and later tasks do not read the old state of these bodies. They are
+    /// moved while all data are in the cache.
     pub(super) fn sweep(&mut self, drive: Option<&Drive>) -> ContactEnergy {
         let laws: Vec<Prepared> = self.laws.all().iter().map(|law| Prepared::new(law, self.dt)).collect();
         let shifts = shifts(&self.domain);
@@ -163,7 +166,7 @@ impl<R: Real> Bed<R> {
         energy
     }
 
-    /// Where the time of all steps so far went.
+    /// Time spent in all steps so far, part by part.
     pub fn timings(&self) -> Timings {
         self.timings
     }
@@ -177,19 +180,19 @@ impl<R: Real> Bed<R> {
             let (cell, position) = self.domain.settle(wall.cell, wall.pose.position.into());
             if cell != wall.cell {
                 (wall.cell, wall.pose.position) = (cell, position.into());
-                // the lists measure ways from poses
+                // the lists measure displacements from stored poses
                 self.lists.outdated = true;
             }
         }
     }
 
-    /// Counts energies by kind from now on, or stops doing so. Costs about a quarter of the speed.
+    /// Starts or stops recording energies by kind. Recording costs about a quarter of the speed.
     pub fn watch_energy(&mut self, on: bool) {
         self.ledger.watch(on);
         self.contacts.watch(on);
     }
 
-    /// Energies at the start of the last step; all zero where nobody watched.
+    /// Energies at the start of the last step; all zero unless energies are recorded.
     pub fn energy(&self) -> Energy {
         self.ledger.now
     }

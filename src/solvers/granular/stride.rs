@@ -1,5 +1,6 @@
-//! The time step of a test on a bed: that of all but a few grains. The few that would need a shorter one (light, long, in many contacts with
-//! dashpots) have some inertia added, and no weight; how much there may be of it in all is a choice.
+//! The time step of a test on a bed: the stable step of all but a few grains. The few grains that need a shorter step
+//! (light, long, or with many contacts with dashpots) get additional inertia, but no additional weight. The total
+//! additional inertia is limited by choice.
 
 use super::bed::Bed;
 use super::failure::Failure;
@@ -10,24 +11,24 @@ use super::walls::WallId;
 
 /// Share of the stable step that is taken.
 const SAFE: f64 = 0.8;
-/// The same of a sleeper on all its contacts.
+/// The same share for a sleeper on all its contacts.
 const SLEEPER: f64 = 0.2;
-/// Steps after which the contacts of now are looked at again.
+/// Number of steps after which the present contacts are checked again.
 const LOOK: u64 = 200;
-/// Width of the range in which the step is sought, as a factor.
+/// Width of the search range of the step, as a factor.
 const WIDEST: f64 = 64.0;
 
-/// How the contacts of a step are shared between their bodies.
+/// How the stiffness of a contact is shared between its bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sharing {
-    /// Each counts twice for both. What rigs do: their figures were made so.
+    /// Each contact counts twice for both bodies. Rigs use this; their published results were computed with it.
     Even,
-    /// By what each body needs: longer steps for the same mass.
+    /// By the need of each body: longer steps for the same mass.
     ByNeed,
 }
 
 impl Sharing {
-    /// Share of sqrt(m / k) that a body bears for contacts still to come.
+    /// Share of sqrt(m / k) of a body that allows for future contacts.
     fn prior(self) -> f64 {
         match self {
             Sharing::Even => 0.25,
@@ -35,7 +36,7 @@ impl Sharing {
         }
     }
 
-    /// Halvings of the range in which the step is sought: to 7 % and to 1 %.
+    /// Number of halvings of the search range of the step: to 7 % and to 1 %.
     fn halvings(self) -> usize {
         match self {
             Sharing::Even => 6,
@@ -44,7 +45,7 @@ impl Sharing {
     }
 }
 
-/// A step that a bed is held at.
+/// A time step that is kept for a bed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stride {
     /// \[s\]
@@ -53,10 +54,10 @@ pub struct Stride {
 }
 
 impl Stride {
-    /// The longest for which no more than `share` of the mass of all bodies is added as inertia.
+    /// The longest step for which the inertia added is at most `share` of the mass of all bodies.
     pub fn with_added<R: Real>(bed: &mut Bed<R>, sharing: Sharing, share: f64) -> Result<Stride, Failure> {
         bed.unscale_masses();
-        // free grains that touch nothing bound no step: then any will do to begin with
+        // free grains without contacts set no limit: then any step will do at the start
         let own = Some(bed.bound_time_step(0.0)?).filter(|step| step.is_finite()).unwrap_or(bed.time_step());
         let (mut fine, mut factor) = (1.0, WIDEST.sqrt());
         for _ in 0..sharing.halvings() {
@@ -70,7 +71,7 @@ impl Stride {
         Ok(Stride { step: own * fine, sharing })
     }
 
-    /// Prepares a bed for some steps, and gives the share of mass that is added.
+    /// Prepares a bed for some steps, and returns the share of mass added.
     pub fn hold<R: Real>(&self, bed: &mut Bed<R>) -> Result<f64, Failure> {
         let stiffness = stiffness(bed);
         let root = self.sharing.prior() / (SAFE * self.step);
@@ -82,7 +83,7 @@ impl Stride {
         Ok(scaling.added_share)
     }
 
-    /// Runs for a time, s, and gives the steps that it took.
+    /// Runs for a time, s, and returns the number of steps.
     pub(super) fn run<R: Real>(&self, bed: &mut Bed<R>, sleepers: &[WallId], time: f64) -> Result<u64, Failure> {
         let (mut left, mut steps) = (time, 0);
         loop {
@@ -107,7 +108,7 @@ impl Stride {
         bed.run(steps)
     }
 
-    /// Longest step that sleepers bear on their contacts of now too, s.
+    /// Longest step that is also stable for sleepers on their present contacts, s.
     fn longest<R: Real>(&self, bed: &Bed<R>, sleepers: &[WallId]) -> f64 {
         let of = |wall: &WallId| {
             let wall = bed.wall(*wall);
@@ -125,7 +126,7 @@ impl Stride {
 fn stiffness<R: Real>(bed: &Bed<R>) -> Vec<f64> {
     let of = |surface: u16| match bed.laws().get(surface, surface) {
         ContactLaw::Linear(law) => law.normal_stiffness.max(law.shear_stiffness),
-        // beds of a scene have linear contacts; others are bounded by the contacts of now alone
+        // beds of a scene have linear contacts; other beds are limited by their present contacts alone
         ContactLaw::HertzMindlin(_) => 0.0,
     };
     (0..bed.laws().surfaces() as u16).map(of).collect()

@@ -1,8 +1,8 @@
-//! Where the time of steps goes, part by part.
+//! Time spent in steps, part by part.
 
 use std::time::Duration;
 
-/// Where the time of steps went.
+/// Time spent in steps.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Timings {
     /// Making lists.
@@ -11,6 +11,6 @@ pub struct Timings {
     pub forces: Duration,
     /// Forces at walls.
     pub walls: Duration,
-    /// Sums, bodies and walls in motion.
+    /// Sums, and motion of bodies and walls.
     pub motion: Duration,
 }

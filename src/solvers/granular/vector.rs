@@ -1,4 +1,4 @@
-//! Vectors of space as plain arrays: what the inner loops and the records hold.
+//! Vectors in space as plain arrays, for the inner loops and the records.
 
 /// Components along x, y, z.
 pub type Vec3 = [f64; 3];

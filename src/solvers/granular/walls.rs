@@ -1,6 +1,6 @@
-//! Contacts of pebbles with walls: one evaluation a pebble and wall, as many contacts as the shape has there.
+//! Contacts of pebbles with walls: one evaluation per pebble and wall, with all contacts of the shape there.
 
-// loops run over the lanes of several arrays at once; chains of iterators made them a third slower
+// loops run over the lanes of several arrays at once; iterator chains made them a third slower
 #![allow(clippy::needless_range_loop)]
 
 use super::contacts::{BlockVector, ContactEnergy, Surroundings};
@@ -19,15 +19,15 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Entries that one task works on. Fixed, so that threads change nothing.
+/// Entries of one task. The number is fixed, so that the number of threads does not change the results.
 const CHUNK: usize = 128;
 const NONE: u32 = u32::MAX;
 
-/// Number of a wall in the order of making.
+/// Number of a wall in the order of creation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct WallId(pub u32);
 
-/// A rigid surface that moves as it is told and feels what touches it.
+/// A rigid surface with a given motion; it records its contact forces.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Wall {
     pub shape: Shape,
@@ -40,9 +40,9 @@ pub struct Wall {
     pub(super) velocity: Vector3<f64>,
     pub(super) spin: Vector3<f64>,
     pub(super) felt: Felt,
-    /// Moment about the origin of the wall's frame \[N m\].
+    /// Moment about the origin of the frame of the wall \[N m\].
     pub(super) moment: Vec3,
-    /// Corners that move, of a plane that is a floor.
+    /// Moving corners of a plane that is a floor.
     #[serde(default)]
     pub(super) sheet: Option<Box<Sheet>>,
 }
@@ -71,28 +71,29 @@ impl Wall {
         self.surface
     }
 
-    /// The corners of a floor that moves.
+    /// The corners of a deformable floor.
     pub fn sheet(&self) -> Option<&Sheet> {
         self.sheet.as_deref()
     }
 
-    /// Where the wall is, its position not wrapped into the period.
+    /// Pose of the wall, its position not wrapped into the period.
     pub fn pose(&self, domain: &Domain) -> Pose {
         Pose { position: domain.place(self.cell, self.pose.position.into()).into(), ..self.pose }
     }
 
-    /// Largest speed of a point of the wall, of a plane within `extent` \[m\] of its origin \[m/s\].
+    /// Largest speed of a point of the wall; for a plane, within `extent` \[m\] of its origin \[m/s\].
     pub(super) fn fastest(&self, extent: f64) -> f64 {
         let sheet = self.sheet.as_ref().map_or(0.0, |sheet| sheet.fastest());
         self.velocity.norm() + self.spin.norm() * self.reach(extent) + sheet
     }
 
-    /// Distance of its farthest point from its origin, of a plane `extent` \[m\].
+    /// Distance of its farthest point from its origin; for a plane, `extent` \[m\].
     fn reach(&self, extent: f64) -> f64 {
         self.shape.bounds().map_or(extent, |[low, high]| low.norm().max(high.norm()))
     }
 
-    /// Where a sphere touches the wall, `away` from its origin, in the wall's frame; a floor that moves is not turned.
+    /// Contact points of a sphere with the wall, `away` from its origin, in the frame of the wall; a deformable floor
+    /// is not rotated.
     #[inline]
     pub(super) fn touches(&self, away: Vec3, radius: f64, facets: &[u32], touches: &mut Vec<Touch>) {
         match &self.sheet {
@@ -104,17 +105,17 @@ impl Wall {
         }
     }
 
-    /// A vector of space in the wall's frame.
+    /// A vector of space in the frame of the wall.
     pub(super) fn turned_back(&self, v: Vec3) -> Vector3<f64> {
         Pose { position: Vector3::zeros(), ..self.pose }.to_frame(&v.into())
     }
 
-    /// From the wall's origin to a pebble \[m\].
+    /// Vector from the origin of the wall to a pebble \[m\].
     #[inline(always)]
     pub(super) fn to(&self, domain: &Domain, cell: [i32; 3], offset: Vec3) -> Vec3 {
         let origin = self.pose.position.into();
         let middle = match self.shape.bounds() {
-            // the shorter way round is that to the middle of the surface, wherever its frame has the origin
+            // the shorter way is measured to the middle of the surface, for any origin of its frame
             Some([low, high]) if low != -high && (0..3).any(|axis| domain.period(axis).is_some()) => {
                 self.pose.direction_to_space(&((low + high) / 2.0)).into()
             }
@@ -129,24 +130,24 @@ impl Wall {
 pub(super) struct Entry {
     pub wall: u32,
     pub pebble: u32,
-    /// Cell of the pebble: where one changes, lists are made anew.
+    /// Cell of the pebble: if it changes, new lists are made.
     cell: [i32; 3],
     pub law: u16,
     pub facets: (u32, u32),
     pub slots: (u32, u32),
 }
 
-/// Room for one contact of an entry.
+/// Memory for one contact of an entry.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Slot<R> {
     pub feature: u32,
     pub normal: Vec3,
     pub shear: [R; 3],
     damping: [R; 3],
-    /// From the wall's origin to the contact point \[m\].
+    /// From the origin of the wall to the contact point \[m\].
     point: Vec3,
     pub overlap: f64,
-    /// Tangents of the normal spring \[N/m\] and its dashpot \[N s/m\].
+    /// Tangent stiffness of the normal spring \[N/m\] and of its dashpot \[N s/m\].
     stiffness: [f64; 2],
 }
 
@@ -161,7 +162,7 @@ impl<R: Real> Slot<R> {
     }
 }
 
-/// Contacts with walls, sorted by wall and then by who the pebble is.
+/// Contacts with walls, sorted by wall and then by pebble.
 #[derive(Debug, Clone, Default)]
 pub(super) struct WallContacts<R> {
     pub entries: Vec<Entry>,
@@ -169,7 +170,7 @@ pub(super) struct WallContacts<R> {
     pub slots: Vec<Slot<R>>,
 }
 
-/// A contact with a wall that goes on in a new list.
+/// A contact with a wall that continues in a new list.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Kept<R> {
     pub wall: u32,
@@ -191,7 +192,7 @@ pub(super) struct Near<'a> {
 }
 
 impl<R: Real> WallContacts<R> {
-    /// Lists what is within `skin` of a wall; `name` gives body and pebble, and `surface` what a pebble is made of.
+    /// Lists the pebbles within `skin` of a wall; `name` gives body and pebble, `surface` the surface of a pebble.
     pub fn find(
         walls: &[Wall],
         around: Near,
@@ -237,7 +238,7 @@ impl<R: Real> WallContacts<R> {
         all
     }
 
-    /// The contacts that touch, to be found again, sorted.
+    /// The contacts with a force, sorted, for carrying over.
     pub fn keep(&self, about: impl Fn(u32) -> (u32, u16)) -> Vec<Kept<R>> {
         let mut kept = Vec::new();
         for entry in &self.entries {
@@ -255,7 +256,7 @@ impl<R: Real> WallContacts<R> {
         &self.slots[entry.slots.0 as usize..entry.slots.1 as usize]
     }
 
-    /// Computes every force, and what each wall feels. `outcomes` has a place for each slot.
+    /// Computes every force, and the total forces on each wall. `outcomes` has a place for each slot.
     pub fn evaluate(
         &mut self,
         walls: &mut [Wall],
@@ -282,7 +283,7 @@ impl<R: Real> WallContacts<R> {
         total
     }
 
-    /// Sums what each wall feels: contact by contact, so that what is merely listed leaves no trace.
+    /// Sums the forces on each wall contact by contact, so that pebbles listed without contact have no effect.
     fn load(&self, walls: &mut [Wall], outcomes: &[Outcome<R>]) {
         walls.par_iter_mut().with_max_len(1).enumerate().for_each(|(number, wall)| {
             let begin = |number: usize| self.entries.partition_point(|entry| (entry.wall as usize) < number);
@@ -294,7 +295,7 @@ impl<R: Real> WallContacts<R> {
 }
 
 impl Wall {
-    /// Takes what its contacts do to it.
+    /// Adds the forces of its contacts.
     fn feel<R: Real>(&mut self, slots: &[Slot<R>], outcomes: &[Outcome<R>]) {
         let (mut felt, mut moment) = (Felt { velocity: self.velocity, ..Felt::default() }, [0.0; 3]);
         self.sheet.iter_mut().for_each(|sheet| sheet.unload());
@@ -312,8 +313,8 @@ impl Wall {
 }
 
 impl Wall {
-    /// Whether the surface is within reach of a pebble; of a mesh, the facets that are, those on the other side of a period
-    /// among them: there the pebble may be before the next list.
+    /// Whether the surface is within reach of a pebble; for a mesh, the facets within reach, including those on the
+    /// other side of a period, because the pebble may get there before the next list.
     fn near(&self, domain: &Domain, away: Vec3, reach: f64, facets: &mut Vec<u32>) -> bool {
         if let Some(sheet) = &self.sheet {
             facets.clear();
@@ -372,7 +373,7 @@ impl Wall {
 }
 
 impl Wall {
-    /// What lies behind a plane across an axis that ends, or within `reach` before it \[m\].
+    /// Space behind a plane across an axis that ends, or within `reach` before it \[m\].
     fn beside(&self, normal: &Vector3<f64>, domain: &Domain, reach: f64) -> Option<[Vec3; 2]> {
         let normal = self.pose.direction_to_space(normal);
         let axis = normal.iamax();
@@ -390,7 +391,7 @@ impl Wall {
     }
 }
 
-/// What tasks share.
+/// Data shared by tasks.
 #[derive(Clone, Copy)]
 struct Shared<'a, R: Real> {
     walls: &'a [Wall],
@@ -401,7 +402,7 @@ struct Shared<'a, R: Real> {
     watched: bool,
 }
 
-/// The entries of a task at work.
+/// The entries of the task in work.
 struct Pass<'a, R: Real> {
     shared: Shared<'a, R>,
     entries: &'a [Entry],
@@ -409,7 +410,7 @@ struct Pass<'a, R: Real> {
     places: &'a mut [Outcome<R>],
 }
 
-/// One lane, for contacts that come singly.
+/// One lane, for single contacts.
 type One<R> = Plain<R, 1>;
 
 impl<R: Real> Work<R> for Pass<'_, R> {
@@ -444,14 +445,14 @@ impl<R: Real> Work<R> for Pass<'_, R> {
 
 /// A meeting in numbers: overlap, normal, arm, velocity, twist, mass, radius of curvature.
 type Met<R> = [R; 11];
-/// Which of them is the mass: it has the precision of contacts already.
+/// Index of the mass: it has the precision of contacts already.
 const MASS: usize = 9;
 
-/// Meetings under one law, one a lane.
+/// Meetings under one law, one per lane.
 struct Batch<R> {
     law: u16,
     count: usize,
-    /// Where their results go.
+    /// Slots for their results.
     slots: [usize; BLOCK],
     met: [[R; BLOCK]; 11],
     shear: BlockVector<R>,
@@ -484,7 +485,7 @@ fn batch_of<R: Real>(batches: &mut Vec<Batch<R>>, law: u16) -> &mut Batch<R> {
 }
 
 impl<R: Real> Pass<'_, R> {
-    /// Computes the forces of a batch, and empties it.
+    /// Computes the forces of a batch, and empties the batch.
     #[inline(always)]
     fn finish<L: Lanes<Real = R>>(&mut self, lanes: L, batch: &mut Batch<R>) {
         let mut met = [Num::splat(lanes, 0.0); 11];
@@ -516,7 +517,7 @@ impl<R: Real> Pass<'_, R> {
 }
 
 impl<R: Real> Pass<'_, R> {
-    /// Asks for all pebbles: in the order of their names, they are anywhere in memory.
+    /// Prefetches all pebbles: in the order of their names, they are scattered in memory.
     #[inline(always)]
     fn ask_for(&self) {
         for entry in self.entries {
@@ -526,8 +527,8 @@ impl<R: Real> Pass<'_, R> {
 }
 
 impl<R: Real> Shared<'_, R> {
-    /// All contacts of a pebble with a wall. One that goes on or begins, which is the usual case, is left to be computed with others: its
-    /// slot has all but its forces then, and what they follow from is given back.
+    /// All contacts of a pebble with a wall. A single contact, the usual case, is returned to be computed together with
+    /// others; its slot then has everything except its forces.
     #[inline(always)]
     fn entry(
         &self,
@@ -544,7 +545,7 @@ impl<R: Real> Shared<'_, R> {
         wall.touches(away, record.radius(), facets, &mut scratch.touches);
         let touched = slots.iter().any(Slot::touches);
         if scratch.touches.is_empty() && !touched {
-            // it was near and still is no more than that
+            // the pebble was near without contact, and still is
             return None;
         }
         for touch in &mut scratch.touches {
@@ -567,7 +568,7 @@ impl<R: Real> Shared<'_, R> {
         None
     }
 
-    /// A contact before its forces are known.
+    /// A contact before its forces are computed.
     #[inline(always)]
     fn slot(&self, entry: &Entry, record: &R::Record, touch: &Touch, point: Vec3, shear: [R; 3]) -> Slot<R> {
         let overlap = record.radius() - touch.distance;
@@ -584,7 +585,7 @@ impl<R: Real> Shared<'_, R> {
         }
     }
 
-    /// A contact that goes on with a history.
+    /// A contact that continues with a history.
     #[inline(always)]
     fn contact(
         &self,
@@ -615,12 +616,12 @@ fn numbers<R: Real>(v: Vector<One<R>>) -> [R; 3] {
     [v.0[0].value[0], v.0[1].value[0], v.0[2].value[0]]
 }
 
-/// How a pebble meets a wall, and where \[m from the wall's origin\].
+/// Geometry of the contact of a pebble with a wall, and its position \[m from the wall's origin\].
 #[inline(always)]
 fn meet<R: Real>(wall: &Wall, record: &R::Record, away: Vec3, touch: &Touch) -> (Met<R>, Vec3) {
     let normal: Vec3 = touch.normal.into();
     let overlap = record.radius() - touch.distance;
-    // on a floor that moves the contact point lies on the facet, so that its corners feel the moment too
+    // on a deformable floor the contact point lies on the facet, so that its corners get the moment too
     let arm = if wall.sheet.is_some() { touch.distance } else { record.radius() - 0.5 * overlap };
     let point = sub(away, scale(normal, arm));
     let ([a, b, c], [p, q, r]) = (record.velocity(), record.spin());
@@ -639,7 +640,7 @@ fn meet<R: Real>(wall: &Wall, record: &R::Record, away: Vec3, touch: &Touch) -> 
     (met, point)
 }
 
-/// Meetings of pebbles with a wall in lanes.
+/// Contacts of pebbles with a wall in lanes.
 #[inline(always)]
 fn meeting<L: Lanes>([overlap, x, y, z, arm, u, v, w, twist, mass, curvature_radius]: [Num<L>; 11]) -> Meeting<L> {
     let arms = [arm, Num::splat(arm.lanes, 0.0)];
@@ -647,7 +648,7 @@ fn meeting<L: Lanes>([overlap, x, y, z, arm, u, v, w, twist, mass, curvature_rad
     Meeting { overlap, normal, arms, velocity, twist, mass, curvature_radius }
 }
 
-/// Energy in a contact, and what it lost in a step.
+/// Energy in a contact, and energy lost in a step.
 fn spent<R: Real>(
     meeting: &Meeting<One<R>>,
     contact: &ContactForces<One<R>>,
@@ -678,7 +679,7 @@ impl<R> Default for Scratch<R> {
 }
 
 impl<R: Real> Scratch<R> {
-    /// Finds the histories that the touches of now go on with.
+    /// Finds the histories of the present contacts.
     fn remember(&mut self, slots: &[Slot<R>]) {
         self.before.clear();
         self.before.extend(slots.iter().filter(|s| s.touches()));
@@ -688,12 +689,12 @@ impl<R: Real> Scratch<R> {
     }
 }
 
-/// Length that a pebble may come nearer to a wall in a step \[m\].
+/// Largest approach of a pebble to a wall in a step \[m\].
 pub(super) fn approach(walls: &[Wall], dt: f64, extent: f64) -> f64 {
     walls.iter().map(|w| w.fastest(extent) * dt).fold(0.0, f64::max)
 }
 
-/// Distance that a wall has gone since its pose was `before` \[m\].
+/// Displacement of a wall since its pose was `before` \[m\].
 pub(super) fn moved(wall: &Wall, before: &Pose, extent: f64) -> f64 {
     let turned = (0..4).map(|k| (wall.pose.orientation[k] - before.orientation[k]).powi(2)).sum::<f64>().sqrt();
     let sheet = wall.sheet.as_ref().map_or(0.0, |sheet| sheet.moved());

@@ -3,7 +3,7 @@
 use super::fit::{Fit, FitError, Parameter, fit};
 use super::law::{Form, Law, Peak};
 
-/// A parameter of a law that is to be found, between bounds, SI.
+/// A parameter of a law to be fitted, between bounds, SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wanted {
     /// The name of the parameter, one of [`Form::parameters`].
@@ -19,12 +19,12 @@ pub struct Measured {
     pub wheels: Vec<Peak>,
     /// Axles passed, ascending.
     pub axles: Vec<u64>,
-    /// Settlement of the support after so many axles, m.
+    /// Settlement of the support after each of these numbers of axles, m.
     pub settlement: Vec<f64>,
 }
 
 impl Form {
-    /// What is usually fitted: the parameters that one force lets tell apart.
+    /// The parameters that are usually fitted: a test with one force can distinguish them.
     pub fn usual_parameters(&self) -> &'static [&'static str] {
         match self {
             Form::Varandas(_) => &["gamma", "beta"],
@@ -38,7 +38,7 @@ impl Form {
     }
 }
 
-/// Settlement after each count of axles, m. A count that ends within a train takes its leading wheels.
+/// Settlement after each number of axles, m. If a number ends within a train, the leading wheels of the train are used.
 pub fn curve(law: &Law, wheels: &[Peak], axles: &[u64]) -> Vec<f64> {
     let of_train = wheels.len().max(1) as u64;
     let mut support = law.fresh();
@@ -54,7 +54,8 @@ pub fn curve(law: &Law, wheels: &[Peak], axles: &[u64]) -> Vec<f64> {
     settlement
 }
 
-/// The law with the parameters that come nearest to the curve, from those that it has; the fit lists them as `wanted` does.
+/// The law with the parameters nearest to the curve; the search starts at the parameters of the law. The fit lists them
+/// in the order of `wanted`.
 pub fn calibrate(law: &Law, wanted: &[Wanted], measured: &Measured) -> Result<(Law, Fit), FitError> {
     let mut start = *law;
     let known = start.form.parameters();

@@ -1,9 +1,9 @@
 //! Fits parameters of a model to measured values: least squares by Levenberg and Marquardt, within bounds.
 //!
-//! The sum of squares is of absolute residuals: every measurement is taken to be as uncertain as the next. A parameter whose
-//! lower bound is positive is varied by its logarithm, so that sizes from micrometres to metres are all the same to the method;
-//! the others as shares of their start. A step that would leave the bounds ends on them, and a parameter that the data press against its bound
-//! rests there.
+//! The sum of squares uses absolute residuals: all measurements are assumed to be equally uncertain. A parameter with a
+//! positive lower bound is varied by its logarithm, so that the method works equally for sizes from micrometres to
+//! metres; other parameters are varied as shares of their start. A step that would leave the bounds ends on them, and a
+//! parameter that the data press against its bound stays there.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -20,7 +20,7 @@ pub struct Parameter {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
     pub values: Vec<f64>,
-    /// From the curvature of the sum of squares and its size; `None` for a parameter that rests on a bound.
+    /// From the curvature of the sum of squares and its value; `None` for a parameter at a bound.
     pub standard_errors: Vec<Option<f64>>,
     /// Root of the mean square of the residuals, in the unit of the measurements.
     pub rms: f64,
@@ -31,26 +31,26 @@ pub struct Fit {
 /// Why there is no best set of parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FitError {
-    /// Not more measurements than parameters.
+    /// There are not more measurements than parameters.
     TooFew { needed: usize },
     /// The model does not depend on these parameters.
     NoEffect { parameters: Vec<usize> },
-    /// These parameters have the same effect as others among them.
+    /// These parameters have the same effect as other parameters of the list.
     Alike { parameters: Vec<usize> },
     /// The model gives no finite number at the start.
     NotFinite,
 }
 
-/// Steps; ten to thirty are usual.
+/// Largest number of steps; ten to thirty are usual.
 const MOST_STEPS: usize = 300;
-/// A change of the sum of squares, as a share of it, that ends the search.
+/// Relative change of the sum of squares at which the search ends.
 const SETTLED: f64 = 1e-15;
-/// Step of differences, of a coordinate.
+/// Step of finite differences, as a share of a coordinate.
 const DIFFERENCE: f64 = 1e-5;
-/// Below this part of the largest, a direction in the space of parameters counts as without effect.
+/// Below this share of the largest singular value, a direction in the space of parameters counts as without effect.
 const SINGULAR: f64 = 1e-5;
 
-/// Fits `model`, which gives one value a measurement.
+/// Fits `model`, which gives one value per measurement.
 pub fn fit(parameters: &[Parameter], measured: &[f64], model: impl Fn(&[f64]) -> Vec<f64>) -> Result<Fit, FitError> {
     if measured.len() <= parameters.len() {
         return Err(FitError::TooFew { needed: parameters.len() + 1 });
@@ -79,17 +79,17 @@ impl Parameter {
         self.low > 0.0
     }
 
-    /// What a coordinate of 1 is worth where it is no logarithm: the start, or a part of the range.
+    /// Value of a coordinate of 1 if the coordinate is not a logarithm: the start, or a part of the range.
     fn unit(&self) -> f64 {
         if self.start == 0.0 { 1e-3 * (self.high - self.low) } else { self.start.abs() }
     }
 
-    /// Where a value stands for the method.
+    /// The coordinate of a value.
     fn coordinate(&self, value: f64) -> f64 {
         if self.by_logarithm() { value.ln() } else { value / self.unit() }
     }
 
-    /// Never outside the bounds.
+    /// The value of a coordinate; never outside the bounds.
     fn value(&self, coordinate: f64) -> f64 {
         let value = if self.by_logarithm() { coordinate.exp() } else { coordinate * self.unit() };
         value.clamp(self.low, self.high)
@@ -117,7 +117,7 @@ impl<M: Fn(&[f64]) -> Vec<f64>> Problem<'_, M> {
         self.parameters.iter().zip(at).map(|(p, c)| p.value(*c)).collect()
     }
 
-    /// Model less measurement; `None` where the model fails.
+    /// Model minus measurement; `None` if the model fails.
     fn residuals(&mut self, at: &[f64]) -> Option<DVector<f64>> {
         self.evaluations += 1;
         let found = (self.model)(&self.values(at));
@@ -125,7 +125,7 @@ impl<M: Fn(&[f64]) -> Vec<f64>> Problem<'_, M> {
         Some(DVector::from_iterator(self.measured.len(), residuals)).filter(|r| r.iter().all(|r| r.is_finite()))
     }
 
-    /// Derivatives of the residuals by the coordinates, one column a parameter; one-sided beside a bound.
+    /// Derivatives of the residuals by the coordinates, one column per parameter; one-sided beside a bound.
     fn jacobian(&mut self, at: &[f64], here: &DVector<f64>) -> DMatrix<f64> {
         let mut jacobian = DMatrix::zeros(self.measured.len(), at.len());
         for (i, parameter) in self.parameters.iter().enumerate() {
@@ -153,7 +153,7 @@ impl<M: Fn(&[f64]) -> Vec<f64>> Problem<'_, M> {
         (0..at.len()).filter(|i| !rests(i)).collect()
     }
 
-    /// A step that lessens the sum of squares; `None` where none does.
+    /// A step that reduces the sum of squares; `None` if no step does.
     fn step(
         &mut self,
         at: &[f64],
@@ -180,7 +180,7 @@ impl<M: Fn(&[f64]) -> Vec<f64>> Problem<'_, M> {
                 let mut next = at.to_vec();
                 for (i, change) in free.iter().zip(change.iter()) {
                     let (low, high) = self.parameters[*i].bounds();
-                    // by a factor of e^2 at most, or by ten times the start
+                    // by a factor of at most e^2, or by at most ten times the start
                     let most = if self.parameters[*i].by_logarithm() { 2.0 } else { 10.0 };
                     next[*i] = (at[*i] + change.clamp(-most, most)).clamp(low, high);
                 }
@@ -195,7 +195,7 @@ impl<M: Fn(&[f64]) -> Vec<f64>> Problem<'_, M> {
         None
     }
 
-    /// Whether every free parameter has an effect of its own.
+    /// Fails unless every free parameter has an effect that differs from the others.
     fn identifiable(&self, jacobian: &DMatrix<f64>, free: &[usize]) -> Result<(), FitError> {
         let size = self.measured.iter().map(|m| m * m).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
         let without: Vec<usize> = free.iter().copied().filter(|i| jacobian.column(*i).norm() < 1e-9 * size).collect();
@@ -319,7 +319,7 @@ mod tests {
             let known = form.parameters();
             for ((name, value), error) in names.iter().zip(&fit.values).zip(&fit.standard_errors) {
                 let truth = known.iter().find(|(n, _)| n == name).map(|(_, v)| **v).unwrap();
-                // a part of the curve that noise hides may rest on its bound
+                // a parameter whose effect is hidden by noise may be at its bound
                 let Some(error) = error else { continue };
                 assert!((value - truth).abs() < 3.0 * error, "{name}: {value} {truth} {error}");
             }
@@ -338,7 +338,7 @@ mod tests {
         assert_eq!(few, Err(FitError::TooFew { needed: 3 }));
     }
 
-    /// Data that want a parameter beyond its bound leave it there, and the others fit around it.
+    /// If the data require a parameter beyond its bound, it stays at the bound, and the others are fitted.
     #[test]
     fn bounds_hold() {
         let measured = [1.0, 2.0, 3.0, 4.0];

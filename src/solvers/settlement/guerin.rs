@@ -1,11 +1,12 @@
-//! Settlement by Guérin (1996): every cycle adds `α (d/d₀)^β` for the elastic deflection d of the support, without end.
+//! Settlement by Guérin (1996): every cycle adds `α (d/d₀)^β` for the elastic deflection d of the support, without
+//! limit.
 
 use serde::{Deserialize, Serialize};
 
 /// The parameters of the law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Guerin {
-    /// Settlement a cycle at the reference deflection, m.
+    /// Settlement per cycle at the reference deflection, m.
     pub alpha: f64,
     /// Exponent of the deflection.
     pub beta: f64,

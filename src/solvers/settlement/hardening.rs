@@ -1,45 +1,47 @@
-//! Varying load under laws that are stated for a constant one.
+//! Varying load under laws that are defined for a constant load.
 //!
-//! A law S = s(F) f(N) says nothing about a load that changes. Strain hardening fills the gap: what has settled counts, not
-//! how. Under a new load the support goes on from the number of cycles of that load which would have settled as much,
+//! A law S = s(F) f(N) does not define the settlement under a load that changes. Strain hardening is used: only the
+//! settlement counts, not its history. Under a new load the support continues from the number of cycles of that load
+//! that would have caused the same settlement,
 //!
 //! ```text
 //! f(N_eq) = S / s(F),   S' = s(F) f(N_eq + n).
 //! ```
 //!
-//! Equal loads give the closed form again, and n cycles are n times one. For f = N^b this is a damage that adds up, whatever the
-//! order: S^(1/b) grows by s^(1/b) a cycle.
+//! Equal loads give the closed form again, and n cycles together are the same as n single cycles. For f = N^b this is a
+//! damage that adds up independent of the order: S^(1/b) grows by s^(1/b) per cycle.
 
 use serde::{Deserialize, Serialize};
 
-/// A law S = s(F) f(N), f rising from f(0) = 0 and never steeper than before.
+/// A law S = s(F) f(N), with f increasing from f(0) = 0 and concave.
 pub(super) trait Growth {
     /// s(F); the product with f is in m.
     fn amplitude(&self, force: f64) -> f64;
     /// f(N).
     fn shape(&self, cycles: f64) -> f64;
-    /// N where f(N) is `shape`; infinite where f never gets there.
+    /// N at which f(N) is `shape`; infinite if f never reaches it.
     fn cycles(&self, shape: f64) -> f64;
-    /// Whether cycles of unequal loads may change places.
+    /// Whether the order of cycles with unequal loads does not matter.
     fn order_is_free(&self) -> bool {
         false
     }
 }
 
-/// What a support remembers under such a law.
+/// The state of a support under such a law.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct HardeningState {
     /// m.
     settlement: f64,
-    /// The last load, N, and the cycles of it that would have settled as much: equal loads stay on the closed form.
+    /// The last load, N, and the number of its cycles that would have caused the same settlement: equal loads stay on
+    /// the closed form.
     force: f64,
     equivalent: f64,
-    /// Cycles carried in all.
+    /// Number of cycles carried so far.
     carried: u64,
 }
 
-/// Trains of unequal wheels are taken wheel by wheel in groups of at most this share of what has been carried. The order
-/// within a group is wrong; `unequal_wheels_agree_with_their_cycles` measures by how much.
+/// Trains with unequal wheels are applied wheel by wheel in groups of at most this share of the cycles carried so far.
+/// The order within a group is not exact; `unequal_wheels_agree_with_their_cycles` measures the error.
 const GROUP: u64 = 16;
 
 impl HardeningState {
@@ -48,7 +50,7 @@ impl HardeningState {
         self.settlement
     }
 
-    /// Lets `trains` trains pass, `forces` (N) being the cycles of one.
+    /// Applies `trains` trains; `forces` (N) are the cycles of one train.
     pub(super) fn load(&mut self, law: &dyn Growth, forces: &[f64], trains: u64) {
         let Some(first) = forces.first() else { return };
         if forces.iter().all(|force| force == first) {
@@ -72,7 +74,7 @@ impl HardeningState {
         }
         let before = if force == self.force { self.equivalent } else { law.cycles(self.settlement / amplitude) };
         let after = before + count as f64;
-        // so weak a load adds nothing to what stronger ones have settled
+        // a load this small adds nothing to the settlement by larger loads
         if !after.is_finite() {
             return;
         }
@@ -81,7 +83,8 @@ impl HardeningState {
     }
 }
 
-/// Solves f(N) = `shape` by Newton's method from a point at or below the root: a concave f is approached from that side only.
+/// Solves f(N) = `shape` by Newton's method from a point at or below the root: a concave f is approached from that side
+/// only.
 pub(super) fn invert(shape: f64, from: f64, value_and_slope: impl Fn(f64) -> (f64, f64)) -> f64 {
     let mut cycles = from;
     for _ in 0..200 {

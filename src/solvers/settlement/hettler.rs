@@ -1,7 +1,7 @@
 //! Settlement by Hettler (1984): `S = s (F/F₀)^1.6 (1 + C log N)`.
 //!
-//! Whether the logarithm is natural or decimal differs between those who quote the law, by a factor of 2.3 in C: it is a
-//! parameter. Between no cycle and the first, where the law says nothing, settlement is taken to grow evenly.
+//! Publications that quote the law differ in the base of the logarithm, natural or decimal, which is a factor of 2.3 in
+//! C: the base is a parameter. Between 0 and 1 cycles the law is not defined; settlement is assumed to grow linearly.
 
 use super::hardening::Growth;
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct Hettler {
     /// Settlement of the first cycle of the reference force, m.
     pub s: f64,
-    /// C: what each e-fold or decade of cycles adds, as a share of the first cycle. Above 0.
+    /// C: settlement added by each e-fold or decade of cycles, as a share of the first cycle. Above 0.
     pub c: f64,
     /// Exponent of the force.
     pub exponent: f64,
@@ -20,7 +20,7 @@ pub struct Hettler {
     pub logarithm: Logarithm,
 }
 
-/// The base of the law's logarithm.
+/// The base of the logarithm of the law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Logarithm {
     Natural,

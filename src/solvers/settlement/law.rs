@@ -1,4 +1,4 @@
-//! What all laws have in common: the peaks that they see, the cycles that they count, their forms and parameters.
+//! Common parts of all laws: the peaks of wheels, the cycles, their forms and parameters.
 
 use super::guerin::Guerin;
 use super::hettler::Hettler;
@@ -9,28 +9,28 @@ use super::shenton::Shenton;
 use super::varandas::Varandas;
 use serde::{Deserialize, Serialize};
 
-/// The most that a support feels while one wheel passes.
+/// The largest loading of a support while one wheel passes.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Peak {
     /// Contact force of the half sleeper on its support, N.
     pub force: f64,
-    /// How far the sleeper presses the support below its unloaded level, m.
+    /// Largest displacement of the support under the sleeper below its unloaded level, m.
     pub deflection: f64,
 }
 
 impl Peak {
-    /// The larger of both in each respect.
+    /// The larger force and the larger deflection of both.
     pub fn max(self, other: Peak) -> Peak {
         Peak { force: self.force.max(other.force), deflection: self.deflection.max(other.deflection) }
     }
 
-    /// The same peak, stronger or weaker by a factor on a linear support.
+    /// The same peak multiplied by a factor, for a linear support.
     pub fn scaled(self, factor: f64) -> Peak {
         Peak { force: self.force * factor, deflection: self.deflection * factor }
     }
 }
 
-/// What one cycle of a law is: the wheels of one axle, bogie or vehicle, reduced to their largest peak.
+/// The unit of one cycle of a law: the wheels of one axle, bogie or vehicle, reduced to their largest peak.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum CyclePer {
     Axle,
@@ -77,7 +77,7 @@ pub struct Law {
 }
 
 impl Form {
-    /// The form of that name with the values of its publication, to be filled through [`Form::parameters`].
+    /// The form with this name and the values of its publication, to be changed through [`Form::parameters`].
     pub fn of_name(name: &str) -> Option<Form> {
         Some(match name {
             "varandas" => Form::Varandas(Varandas::default()),
@@ -154,8 +154,8 @@ impl Form {
 }
 
 impl Law {
-    /// Whether it sees nothing of a wheel but the force on the ballast: it settles more where a stiffer track loads a sleeper more, and
-    /// knows nothing of a subgrade that gives.
+    /// Whether only the force of a wheel on the ballast affects the settlement. Such a law gives more settlement if a
+    /// stiffer track loads a sleeper more, and does not include the deflection of the subgrade.
     pub fn knows_forces_alone(&self) -> bool {
         !matches!(self.form, Form::Guerin(_))
     }

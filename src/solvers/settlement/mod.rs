@@ -1,7 +1,7 @@
-//! How far a support has settled after the wheels that it has carried: the laws, and what each remembers.
+//! Settlement of a support after the wheels that it has carried: the laws, and the state of each.
 //!
-//! A law sees, of every wheel, the [`Peak`] of what its support felt. How many wheels make one of its cycles is the law's
-//! [`CyclePer`]: publications differ, and some do not say. A [`SupportState`] begins under one law and stays under it.
+//! A law uses, for every wheel, the [`Peak`] at its support. The number of wheels in one cycle is the [`CyclePer`] of
+//! the law: publications differ, and some do not specify it. A [`SupportState`] has one law and keeps it.
 
 mod calibration;
 pub mod fit;

@@ -4,9 +4,9 @@
 //! dδ/dN = (α/N₀) Σ ( ⟨F − F_th(δ)⟩ / F₀ )^β,   F_th(δ) = F_∞ − (F_∞ − F_th0) e^{−γδ}
 //! ```
 //!
-//! over the cycles of one train, ⟨x⟩ = max(x, 0). A force below F_∞ shakes down at `δ_∞ = ln((F_∞ − F_th0)/(F_∞ − F)) / γ`. The
-//! right side depends on δ alone, so that a block of trains is one integration, by the pair of Dormand and Prince, to
-//! [`TOLERANCE`] a step.
+//! over the cycles of one train, ⟨x⟩ = max(x, 0). Under a force below F_∞ the settlement ends at
+//! `δ_∞ = ln((F_∞ − F_th0)/(F_∞ − F)) / γ`. The right side depends on δ alone, so that a block of trains is one
+//! integration, by the pair of Dormand and Prince, with the error [`TOLERANCE`] per step.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,11 +17,11 @@ pub struct Nasrollahi {
     pub alpha: f64,
     /// Exponent of the force above the threshold, 1 or more.
     pub beta: f64,
-    /// How fast the threshold rises with settlement, 1/m.
+    /// Rate at which the threshold rises with settlement, 1/m.
     pub gamma: f64,
-    /// F_th0, of a fresh support, N.
+    /// F_th0, threshold of a fresh support, N.
     pub initial_threshold: f64,
-    /// F_∞, of a support that has settled for long, N; not below the initial one.
+    /// F_∞, threshold of a support after long settlement, N; not below the initial threshold.
     pub final_threshold: f64,
     /// F₀, N.
     pub reference_force: f64,
@@ -31,7 +31,7 @@ pub struct Nasrollahi {
 
 /// Error of one step, as a share of the settlement.
 const TOLERANCE: f64 = 1e-11;
-/// More steps than any block needs: 1e9 cycles take a few hundred.
+/// Largest number of steps; 1e9 cycles need a few hundred.
 const MOST_STEPS: usize = 100_000;
 
 impl Default for Nasrollahi {
@@ -55,14 +55,15 @@ impl Nasrollahi {
         self.final_threshold - (self.final_threshold - self.initial_threshold) * (-self.gamma * settlement).exp()
     }
 
-    /// dδ/dN, m a train with cycles of peak `forces` (N).
+    /// dδ/dN, m per train with cycles of peak `forces` (N).
     fn rate(&self, settlement: f64, forces: &[f64]) -> f64 {
         let threshold = self.threshold(settlement);
         let above = forces.iter().map(|force| (force - threshold) / self.reference_force).filter(|above| *above > 0.0);
         self.alpha / self.reference_cycles * above.map(|above| above.powf(self.beta)).sum::<f64>()
     }
 
-    /// Settlement (m) of a support at `settlement` after `trains` further trains, each with cycles of peak `forces` (N).
+    /// Settlement (m) of a support at `settlement` after `trains` further trains, each with cycles of peak `forces`
+    /// (N).
     pub(super) fn after(&self, settlement: f64, forces: &[f64], trains: f64) -> f64 {
         let (mut now, mut left, mut step) = (settlement, trains, trains);
         let mut slope = self.rate(now, forces);
@@ -84,7 +85,7 @@ impl Nasrollahi {
     }
 }
 
-/// One step of order 5 from `y` with slope `k1` there, and its distance from the embedded one of order 4.
+/// One step of order 5 from `y` with slope `k1` there, and its difference from the embedded step of order 4.
 fn dormand_prince(y: f64, k1: f64, h: f64, f: impl Fn(f64) -> f64) -> (f64, f64) {
     let k2 = f(y + h * k1 / 5.0);
     let k3 = f(y + h * (3.0 / 40.0 * k1 + 9.0 / 40.0 * k2));

@@ -1,6 +1,6 @@
-//! A power law of the user's own: `S = a (F/F₀)^m N^b`.
+//! A power law defined by the user: `S = a (F/F₀)^m N^b`.
 //!
-//! Under varying load S^(1/b) adds up (see `hardening`): the order of the cycles does not matter.
+//! Under varying load S^(1/b) adds up (see `hardening`): the order of the cycles has no effect.
 
 use super::hardening::Growth;
 use serde::{Deserialize, Serialize};
@@ -10,16 +10,17 @@ use serde::{Deserialize, Serialize};
 pub struct Power {
     /// Settlement of the first cycle of the reference force, m.
     pub a: f64,
-    /// Exponent of the force; a larger one lets strong cycles settle more.
+    /// Exponent of the force; with a larger exponent large forces cause more of the settlement.
     pub m: f64,
-    /// Exponent of the count, above 0 and at most 1; a larger one lets settlement go on.
+    /// Exponent of the number of cycles, above 0 and at most 1; with a larger exponent settlement continues longer.
     pub b: f64,
     /// F₀, N.
     pub reference_force: f64,
 }
 
 impl Default for Power {
-    /// No publication: the shape of the box tests of Selig and Waters (1994), N^0.17, 4.318 mm in the first cycle.
+    /// Not from a publication: the shape of the box tests of Selig and Waters (1994), N^0.17, 4.318 mm in the first
+    /// cycle.
     fn default() -> Self {
         Self { a: 4.318e-3, m: 1.0, b: 0.17, reference_force: 50e3 }
     }

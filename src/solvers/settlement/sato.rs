@@ -1,7 +1,7 @@
-//! Settlement by Sato (1995): `S = γ (1 − e^{−αN}) + β N`, what the ballast loses at once after tamping and what it goes on to
-//! lose.
+//! Settlement by Sato (1995): `S = γ (1 − e^{−αN}) + β N`, the initial settlement of the ballast after tamping and the
+//! continuing settlement.
 //!
-//! The published form knows no force. `exponent` brings one in, as a factor (F/F₀)^m; at 0 it is the published form.
+//! The published form does not depend on the force. `exponent` adds a factor (F/F₀)^m; with 0 it is the published form.
 
 use super::hardening::{Growth, invert};
 use serde::{Deserialize, Serialize};
@@ -9,15 +9,15 @@ use serde::{Deserialize, Serialize};
 /// The parameters of the law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sato {
-    /// How fast the first part comes, 1 per cycle.
+    /// Rate of the initial settlement, 1 per cycle.
     pub alpha: f64,
-    /// What every cycle adds for ever, m.
+    /// Continuing settlement per cycle, m.
     pub beta: f64,
-    /// The whole first part, m.
+    /// Total initial settlement, m.
     pub gamma: f64,
     /// m, exponent of the force.
     pub exponent: f64,
-    /// F₀, N; without effect while the exponent is 0.
+    /// F₀, N; without effect if the exponent is 0.
     pub reference_force: f64,
 }
 

@@ -1,8 +1,8 @@
 //! Settlement by Shenton (1985): `S = (F/F₀)^m (k₁ N^0.2 + k₂ N)`.
 //!
-//! The full form, with a lift L in mm at tamping, `S = K_s (A/20) [(0.69 + 0.028 L) N^0.2 + 2.7e-6 N]` mm for an axle load A in t,
-//! is this one with m = 1, F₀ the seat force of a 20 t axle, k₁ = K_s (0.69 + 0.028 L) mm and k₂ = 2.7e-6 K_s mm. Strain
-//! hardening of its first term is Shenton's own rule for mixed axles, that their fifth powers add.
+//! The full form, with a lift L in mm at tamping, `S = K_s (A/20) [(0.69 + 0.028 L) N^0.2 + 2.7e-6 N]` mm for an axle
+//! load A in t, is this form with m = 1, F₀ the seat force of a 20 t axle, k₁ = K_s (0.69 + 0.028 L) mm and k₂ = 2.7e-6
+//! K_s mm. Strain hardening of its first term is Shenton's own rule for mixed axles: their fifth powers add up.
 
 use super::hardening::{Growth, invert};
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub struct Shenton {
     /// Settlement of the first cycle of the reference force, m.
     pub k1: f64,
-    /// What every cycle of the reference force adds for ever, m.
+    /// Continuing settlement per cycle of the reference force, m.
     pub k2: f64,
     /// m, exponent of the force.
     pub exponent: f64,
@@ -44,7 +44,7 @@ impl Growth for Shenton {
         if k2 == 0.0 || shape == 0.0 {
             return by_root;
         }
-        // at a count where each term makes half or less, both make no more than the whole
+        // at a number of cycles at which each term gives half or less, both together give no more than the whole
         let below = (by_root * 0.5f64.powf(1.0 / ROOT)).min(0.5 * shape / k2);
         invert(shape, below, |n| (self.shape(n), ROOT * k1 * n.powf(ROOT - 1.0) + k2))
     }

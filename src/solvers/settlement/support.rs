@@ -1,6 +1,7 @@
-//! One support under one law: what it has carried, and how far it has settled.
+//! One support under one law: the cycles that it has carried, and its settlement.
 //!
-//! A law's parameters stand beside what that law remembers, so that no law can meet what another has written.
+//! The parameters of a law are stored together with the state for this law, so that a state is never used with another
+//! law.
 
 use super::guerin::Guerin;
 use super::hardening::HardeningState;
@@ -13,14 +14,14 @@ use super::shenton::Shenton;
 use super::varandas::{Varandas, VarandasState};
 use serde::{Deserialize, Serialize};
 
-/// A support under a [`Law`], with all that its future depends on.
+/// A support under a [`Law`], with the complete state on which its further settlement depends.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SupportState {
     cycle_per: CyclePer,
     memory: Memory,
 }
 
-/// The form of a law, and what it remembers: a settlement, m, where that is all there is to know.
+/// The form of a law, and its state: a settlement, m, if nothing else is needed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 enum Memory {
     Varandas(Varandas, VarandasState),
@@ -33,7 +34,7 @@ enum Memory {
 }
 
 impl Law {
-    /// A support that has carried nothing yet.
+    /// A support that has carried no load yet.
     pub fn fresh(&self) -> SupportState {
         let memory = match self.form {
             Form::Varandas(law) => Memory::Varandas(law, VarandasState::default()),
@@ -49,8 +50,8 @@ impl Law {
 }
 
 impl SupportState {
-    /// Lets `trains` equal trains pass: `wheels` holds the peak of each wheel of one of them, the leading one first. A cycle
-    /// whose force is not positive settles nothing.
+    /// Applies `trains` equal trains: `wheels` holds the peak of each wheel of one train, the leading wheel first. A
+    /// cycle without a positive force causes no settlement.
     pub fn load(&mut self, wheels: &[Peak], trains: u64) {
         let cycles = wheels
             .chunks(self.cycle_per.axles())

@@ -1,4 +1,4 @@
-//! Every law against its published numbers and closed form; blocks against their cycles; loads that change.
+//! Every law against its published numbers and closed form; blocks against single cycles; varying loads.
 
 use super::hardening::Growth;
 use super::*;
@@ -19,7 +19,7 @@ fn after(law: &Law, blocks: &[(f64, u64)]) -> f64 {
     1e3 * state.settlement()
 }
 
-/// Every law that hardens by the rule of `hardening`, with a force that matters.
+/// Every law with the hardening rule of `hardening`, with a force that has an effect.
 fn growing() -> Vec<Law> {
     let sato = Sato { exponent: 1.5, ..Sato::default() };
     let decimal = Hettler { logarithm: Logarithm::Decimal, ..Hettler::default() };
@@ -61,8 +61,8 @@ fn every() -> Vec<Law> {
     laws
 }
 
-/// Against sums cycle by cycle, of which the law is the limit of small cycles (tables made in longer steps lie up to
-/// 0.0013 mm higher), and the shakedown limit.
+/// Against sums cycle by cycle, which the law approximates for small cycles (tables computed with longer steps are up
+/// to 0.0013 mm higher), and against the shakedown limit.
 #[test]
 fn nasrollahi_cycle_by_cycle() {
     let law = law(Form::Nasrollahi(Nasrollahi::default()));
@@ -78,14 +78,14 @@ fn nasrollahi_cycle_by_cycle() {
             let found = after(&law, &[(force, count)]);
             assert!((found - millimetres).abs() <= 1e-3, "{force} N, {count}: {found} mm, {millimetres} mm");
         }
-        // shakedown: never beyond the limit, and there in the end
+        // shakedown: never beyond the limit, and finally at the limit
         let found = after(&law, &[(force, u64::MAX / 4)]);
         assert!(found <= limit + 0.5e-3 && found > limit - 2e-3, "{force} N: {found} mm, {limit} mm");
     }
     assert_eq!(after(&law, &[(35e3, 1_000_000), (28e3, 1_000_000)]), 0.0);
 }
 
-/// N(δ) is an integral of the inverse rate: an independent way to the same curve.
+/// N(δ) is the integral of the inverse rate: an independent way to the same curve.
 #[test]
 fn nasrollahi_agrees_with_the_quadrature() {
     let form = Nasrollahi::default();
@@ -137,7 +137,7 @@ fn shenton_in_full() {
     assert!((mixed / (1.1 * mean / 20.0 * 0.69 * 2e4f64.powf(0.2)) - 1.0).abs() < 1e-12);
 }
 
-/// The two logarithms differ by ln 10 in C, and by nothing in the first cycle.
+/// The two logarithms differ by ln 10 in C, and are equal in the first cycle.
 #[test]
 fn hettlers_logarithms() {
     let natural = law(Form::Hettler(Hettler::default()));
@@ -205,7 +205,7 @@ fn parameters_have_their_names() {
     }
 }
 
-/// A million trains in one call, and a state that comes back from a checkpoint with its bits.
+/// A million trains in one call, and a state restored bit by bit from a checkpoint.
 #[test]
 fn states_survive_a_checkpoint() {
     let wagon = [30e3, 42e3, 36e3, 33e3].map(peak);
@@ -245,7 +245,7 @@ proptest! {
         }
     }
 
-    /// Settlement never goes back, whatever comes after what.
+    /// Settlement never decreases, for any order of loads.
     #[test]
     fn settlement_never_decreases(blocks in prop::collection::vec((1e2..300e3f64, 1u64..100_000), 1..12)) {
         for law in every() {

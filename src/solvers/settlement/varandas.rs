@@ -1,34 +1,35 @@
-//! Settlement of a support after Varandas, Hölscher and Silva (2014): every band of force
-//! settles by a power of the number of times it was reached.
+//! Settlement of a support by Varandas, Hölscher and Silva (2014): every band of force adds a settlement that is a
+//! power of the number of times that the band was reached.
 //!
-//! The n-th cycle, of peak `F_n`, adds `u_n = (γ/M) ∫₀^{F_n} F^α (h(F) + 1)^-β dF`, where h(F) counts the earlier cycles of
-//! peak F or more and `M = F₀^{α+1}/(α+1) · H(N₀)` makes N₀ cycles of peak F₀ settle by γ. Summed for a fixed F, the terms
-//! are 1, 2^-β, 3^-β, ..., whatever the order of the cycles, so
+//! The n-th cycle, of peak `F_n`, adds `u_n = (γ/M) ∫₀^{F_n} F^α (h(F) + 1)^-β dF`. Here h(F) is the number of earlier
+//! cycles of peak F or more, and `M = F₀^{α+1}/(α+1) · H(N₀)`, so that N₀ cycles of peak F₀ give the settlement γ.
+//! Summed for a fixed F, the terms are 1, 2^-β, 3^-β, ..., for any order of the cycles, so
 //!
 //! ```text
 //! S = (γ/M) ∫₀^∞ F^α H(n(F)) dF,   H(n) = Σ_{j=1..n} j^-β,   n(F) = cycles of peak F or more.
 //! ```
 //!
-//! n(F) is a staircase: a sorted list of peaks with their counts is the whole memory, and S needs no order of events.
+//! n(F) is a staircase function: a sorted list of peaks with their counts is the complete state, and S is independent
+//! of the order of events.
 
 use serde::{Deserialize, Serialize};
 
 /// The parameters of the law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Varandas {
-    /// Exponent of the force; a larger one lets strong cycles settle more. Above -1.
+    /// Exponent of the force; with a larger exponent large forces cause more of the settlement. Above -1.
     pub alpha: f64,
-    /// Exponent of the count; a larger one ends settlement sooner. 0 or more.
+    /// Exponent of the number of cycles; with a larger exponent settlement ends sooner. 0 or more.
     pub beta: f64,
     /// Settlement after the reference cycles, m.
     pub gamma: f64,
-    /// N₀, number of reference cycles, 1 or more, whole.
+    /// N₀, number of reference cycles, an integer, 1 or more.
     pub reference_cycles: f64,
-    /// F₀, their peak force, N.
+    /// F₀, peak force of the reference cycles, N.
     pub reference_force: f64,
 }
 
-/// The cycles that one support has carried.
+/// The cycles carried by one support.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct VarandasState {
     /// Peak force (N) and number of cycles, strongest first, every peak once.
@@ -58,7 +59,7 @@ impl Varandas {
 }
 
 impl VarandasState {
-    /// Adds `count` cycles of peak force `peak` (N); a peak that is not positive leaves no trace.
+    /// Adds `count` cycles of peak force `peak` (N); a peak that is not positive is ignored.
     pub fn add_cycles(&mut self, peak: f64, count: u64) {
         if count == 0 || peak.is_nan() || peak <= 0.0 {
             return;
@@ -99,13 +100,13 @@ impl PowerSum {
             return *sum;
         }
         let (n, from, beta) = (n as f64, SUMMED as f64, self.beta);
-        // ∫ x^-β dx, sound through β = 1.
+        // ∫ x^-β dx, accurate also near β = 1.
         let (power, ratio) = (1.0 - beta, (n / from).ln());
         let integral = if power == 0.0 { ratio } else { from.powf(power) * (power * ratio).exp_m1() / power };
         self.table[SUMMED] + integral + self.correction(n) - self.correction(from)
     }
 
-    /// `f(x)/2 + Σ B_2k/(2k)! f^(2k-1)(x)` for f = x^-β, to k = 4: the rest is below 1e-15 from 32 on.
+    /// `f(x)/2 + Σ B_2k/(2k)! f^(2k-1)(x)` for f = x^-β, to k = 4: the remainder is below 1e-15 from 32 on.
     fn correction(&self, x: f64) -> f64 {
         let beta = self.beta;
         let mut derivative = x.powf(-beta); // of order 0, then 1, 3, 5, 7

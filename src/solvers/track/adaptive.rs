@@ -1,17 +1,19 @@
-//! Steps of varying length: halved where the motion changes within a step, doubled again where it is calm.
+//! Time steps of varying length: halved if the motion changes within a step, doubled again if the motion is calm.
 //!
-//! The error of a step is that of the displacement against the next order (Zienkiewicz and Xie 1991,
-//! doi 10.1002/eqe.4290200907):
+//! The error of a step is the difference between its displacement and the displacement of the next order
+//! (Zienkiewicz and Xie 1991, doi 10.1002/eqe.4290200907):
 //!
 //! ```text
 //! e = |β - 1/6| Δt² max |a_{n+1} - a_n|        over rail deflections, sleepers and vehicles, m
 //! ```
 //!
-//! A rail that shears is left out: its nodes jump whenever a wheel passes one, by the mesh and not by the step.
+//! Rails with shear are left out: their nodes jump whenever a wheel passes a node, because of the mesh and not of the
+//! step.
 //!
-//! A step whose error is above the tolerance is taken back and halved, down to the shortest step of the ladder; there it is
-//! kept and counted. As e falls with Δt³, a step may double once its error is below a twelfth of the tolerance, where the
-//! longer step begins on its own grid: every time that a longer step reaches, all shorter ones reach too.
+//! A step whose error is above the tolerance is taken back and halved, down to the shortest step of the ladder. The
+//! shortest step is kept even if its error is above the tolerance; such steps are counted. As e falls with Δt³, the
+//! step is doubled if its error is below a twelfth of the tolerance and the longer step begins on its own grid. So
+//! every time that a longer step reaches is also reached by all shorter steps.
 
 use super::error::{TrackError, TrackParameter};
 use super::influence::Stepper;
@@ -19,13 +21,14 @@ use super::ladder::{Before, Choice, Ladder};
 use super::model::TrackLevel;
 use super::passage::{Passage, Run};
 
-/// Part of the tolerance below which a step may be twice as long: its error grows eightfold, and half as much again is spare.
+/// Share of the tolerance below which the step may be doubled. Its error then grows eightfold; a factor of 1.5 is kept
+/// as reserve.
 const CALM: f64 = 1.0 / 12.0;
 
 impl<'a> Passage<'a> {
-    /// Places the train at its start as [`Passage::new`] does, to run in steps of the ladder whose error stays below
-    /// `tolerance` times the largest deflection of the rail under the train at its start, where the ladder is long enough;
-    /// [`Counters`](super::Counters) tells. Fails where the tolerance is not above 0, too.
+    /// Places the train at its start as [`Passage::new`] does, to run in steps of the ladder. The error of a step stays
+    /// below `tolerance` times the largest deflection of the rail under the train at its start, if the ladder is long
+    /// enough; [`Counters`](super::Counters) counts the other steps. Fails also if the tolerance is not above 0.
     pub fn adaptive(
         ladder: &'a Ladder,
         level: &'a TrackLevel,
@@ -48,7 +51,7 @@ impl<'a> Passage<'a> {
         Ok(passage)
     }
 
-    /// One step of the length that the motion asks for.
+    /// One step of the length that the error requires.
     pub(super) fn chosen_step(&mut self, choice: &mut Choice<'a>) -> Result<(), TrackError> {
         self.save(&mut choice.before);
         loop {
@@ -121,7 +124,7 @@ impl<'a> Passage<'a> {
         self.counters.steps -= 1;
     }
 
-    /// Goes on in steps of another length.
+    /// Continues in steps of another length.
     fn change_step(&mut self, stepper: &'a Stepper) -> Result<(), TrackError> {
         let ratio = stepper.time_step() / self.stepper.time_step();
         self.ticks_per_step = self.ticks_of(stepper);

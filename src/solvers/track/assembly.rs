@@ -1,4 +1,4 @@
-//! The matrices of a meshed track and its own forces: every part adds its share.
+//! The matrices of a meshed track and the forces of the track itself: every part adds its share.
 
 use super::beam::add_element;
 use super::ends;
@@ -9,7 +9,7 @@ use super::numbering::{Numbering, place_nodes, rail_elements};
 use crate::linalg::banded::SymmetricBanded;
 
 impl Track {
-    /// Meshes a model and assembles its matrices; fails where the model contradicts itself.
+    /// Meshes a model and assembles its matrices; fails if the model contradicts itself.
     pub fn new(model: TrackModel) -> Result<Self, TrackError> {
         model.check()?;
         let nodes = place_nodes(&model);
@@ -58,7 +58,7 @@ impl Track {
         ends::assemble(self);
     }
 
-    /// Gravity on the nodes, and what pulls the rail ends to `level` where the track goes on beyond them.
+    /// Gravity on the nodes, and the forces that hold the rail ends at `level` if the track goes on beyond them.
     pub(super) fn own_forces(&self, level: &TrackLevel) -> Vec<f64> {
         let mut forces = self.weight.clone();
         for (end, unknown, pull) in ends::pulls(self) {
@@ -67,7 +67,8 @@ impl Track {
         forces
     }
 
-    /// Forces on the nodes that do not change while the track stays at `level`: its own and the closed supports' levels.
+    /// Forces on the nodes that do not change while the track stays at `level`: the forces of the track itself and of
+    /// the levels of the closed supports.
     pub(super) fn steady_forces(&self, level: &TrackLevel) -> Vec<f64> {
         let mut forces = self.own_forces(level);
         for sleeper in &self.sleepers {
@@ -166,7 +167,7 @@ impl Track {
     }
 }
 
-/// Adds a spring or damper between an unknown and another, or ground that does not move.
+/// Adds a spring or damper between two unknowns, or between an unknown and fixed ground.
 fn add_spring(matrix: &mut SymmetricBanded, unknown: usize, foot: Option<usize>, value: f64) {
     matrix.add(unknown, unknown, value);
     if let Some(foot) = foot {

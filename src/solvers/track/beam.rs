@@ -1,12 +1,14 @@
-//! The beam element of two nodes that is exact for loads at its nodes, after Euler–Bernoulli or Timoshenko.
+//! The beam element with two nodes, Euler–Bernoulli or Timoshenko; it is exact for loads at its nodes.
 //!
-//! Unknowns are deflection w (down) and rotation θ of the cross-section (the slope w' where there is no shear) of the left
-//! and of the right node. Between them lies the exact solution of the unloaded beam: a cubic w whose shape depends on
-//! `φ = 12 EI/(κGA h²)`, and the quadratic θ that belongs to it (Friedman and Kosmatka, Computers & Structures 47, 1993,
-//! doi 10.1016/0045-7949(93)90243-7), so the element does not lock. φ = 0 is the Hermite element of Euler–Bernoulli.
+//! Unknowns are the deflection w (down) and the rotation θ of the cross-section (the slope w' if there is no shear) at
+//! the left and at the right node. Between the nodes the element is the exact solution of the unloaded beam: a cubic w
+//! whose shape depends on `φ = 12 EI/(κGA h²)`, and the quadratic θ that belongs to it (Friedman and Kosmatka,
+//! Computers & Structures 47, 1993, doi 10.1016/0045-7949(93)90243-7). So the element does not lock. φ = 0 is the
+//! Hermite element of Euler–Bernoulli.
 //!
-//! Under a point load P between the nodes the exact deflection exceeds that of the element by the one of a beam clamped at
-//! both nodes, [`Element::clamped_deflection`], and the moments at the nodes by the clamping moments `-P N₂(a)`, `P N₄(a)`.
+//! Under a point load P between the nodes, the exact deflection is the deflection of the element plus the deflection of
+//! a beam clamped at both nodes, [`Element::clamped_deflection`]. The exact moments at the nodes exceed the moments of
+//! the element by the clamping moments `-P N₂(a)`, `P N₄(a)`.
 
 use crate::linalg::banded::SymmetricBanded;
 
@@ -26,7 +28,7 @@ pub(super) struct Element {
 }
 
 impl Element {
-    /// Without a shear stiffness (κGA, N) the element is Euler–Bernoulli's.
+    /// Without a shear stiffness (κGA, N) the element is an Euler–Bernoulli beam.
     pub fn new(length: f64, bending_stiffness: f64, shear_stiffness: Option<f64>) -> Self {
         let shear_stiffness = shear_stiffness.unwrap_or(f64::INFINITY);
         let shear_ratio = 12.0 * bending_stiffness / (shear_stiffness * length * length);
@@ -47,17 +49,19 @@ impl Element {
         .map(|row| row.map(|entry| c * entry))
     }
 
-    /// Consistent matrix of something that resists deflection along the element: mass, foundation, damping, per metre.
+    /// Consistent matrix of a property that resists deflection along the element: mass, foundation or damping, per
+    /// metre.
     pub fn spread(&self, per_metre: f64) -> ElementMatrix {
         self.integral(per_metre, |a| self.shape(a))
     }
 
-    /// Consistent matrix of what resists the rotation of the cross-section: rotary inertia ρI, per metre.
+    /// Consistent matrix of the rotary inertia ρI per metre, which resists the rotation of the cross-section.
     pub fn rotary(&self, per_metre: f64) -> ElementMatrix {
         self.integral(per_metre, |a| self.rotation(a))
     }
 
-    /// Nodal forces of a load spread evenly, N per metre; their product with displacements also integrates these.
+    /// Nodal forces of an evenly distributed load, N per metre; their product with the displacements is also the
+    /// integral of the deflection.
     pub fn even_load(&self, per_metre: f64) -> [f64; 4] {
         let h = self.length;
         [per_metre * h / 2.0, per_metre * h * h / 12.0, per_metre * h / 2.0, -per_metre * h * h / 12.0]
@@ -86,15 +90,15 @@ impl Element {
         [-turn, c * t * (t - 2.0 * s + phi), turn, c * s * (s - 2.0 * t + phi)]
     }
 
-    /// Deflection at distance `x` under a unit load at `a` of a beam clamped at both nodes, m/N.
+    /// Deflection at distance `x` of a beam clamped at both nodes under a unit load at `a`, m/N.
     pub fn clamped_deflection(&self, x: f64, a: f64) -> f64 {
-        // Seen from the node on whose side x lies: its reaction is N₁(a), its clamping moment N₂(a).
+        // Seen from the node on the side of x: its reaction is N₁(a), its clamping moment N₂(a).
         let (x, a) = if x <= a { (x, a) } else { (self.length - x, self.length - a) };
         let [reaction, moment, ..] = self.shape(a);
         x * (0.5 * x * (moment - reaction * x / 3.0) / self.bending_stiffness + reaction / self.shear_stiffness)
     }
 
-    /// Sagging moments at the left and the right node, N m, without what loads inside the element add.
+    /// Sagging moments at the left and the right node, N m, without the moments of loads inside the element.
     #[inline]
     pub fn end_moments(&self, [w0, r0, w1, r1]: [f64; 4]) -> [f64; 2] {
         let (h, phi) = (self.length, self.shear_ratio);
@@ -104,7 +108,7 @@ impl Element {
         [c * (chord + near * r0 + far * r1), -c * (chord + far * r0 + near * r1)]
     }
 
-    /// `∫ f fᵀ da` over the element, times a factor: exact for the cubics by four points of Gauss.
+    /// `∫ f fᵀ da` over the element, times a factor: exact for the cubics by four Gauss points.
     fn integral(&self, factor: f64, f: impl Fn(f64) -> [f64; 4]) -> ElementMatrix {
         const POINTS: [(f64, f64); 2] =
             [(0.339_981_043_584_856_26, 0.652_145_154_862_546_1), (0.861_136_311_594_052_6, 0.347_854_845_137_453_9)];
@@ -172,7 +176,7 @@ mod tests {
         }
     }
 
-    /// Halving an element changes nothing in between, as its functions are exact.
+    /// Halving an element does not change the result between the nodes, as its functions are exact.
     #[test]
     fn two_halves_are_one() {
         for (whole, half) in theories(0.6).into_iter().zip(theories(0.3)) {

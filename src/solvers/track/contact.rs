@@ -1,18 +1,18 @@
-//! How a wheel presses on the rail: the law of Hertz, a spring and damper, or a force that is given.
+//! How a wheel presses on the rail: Hertz's law, a spring and damper, or a given force.
 
 use super::WheelContact;
 
-/// Newton steps after which an indentation is as exact as numbers are.
+/// Newton steps after which an indentation is exact to rounding.
 const NEWTON_LIMIT: usize = 30;
 
-/// The force of a wheel over its indentation of the rail, at one instant.
+/// The force of a wheel as a function of its indentation of the rail, at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum WheelLaw {
     /// `constant max(0, δ)^1.5`.
     Hertz { constant: f64 },
     /// `stiffness δ + offset`, in both directions.
     Line { stiffness: f64, offset: f64 },
-    /// A force that is given, N.
+    /// A given force, N.
     Given { force: f64 },
 }
 
@@ -26,9 +26,10 @@ impl WheelLaw {
         }
     }
 
-    /// The law at the end of a step of `time_step` (s) that begins at `indentation` after a change by `change` (m) in the
-    /// step before. A damper takes the speed that the last two indentations and the new one give to second order,
-    /// `δ' = (3 δ_n+1 - 4 δ_n + δ_n-1)/(2 Δt)`, so that slope and unevenness of the wheel's path are part of it.
+    /// The law at the end of a step of `time_step` (s). The step begins at `indentation` (m); `change` (m) is the
+    /// change of the indentation in the step before. A damper uses the second-order speed from the last two
+    /// indentations and the new one, `δ' = (3 δ_n+1 - 4 δ_n + δ_n-1)/(2 Δt)`, so slope and unevenness of the wheel path
+    /// are included.
     #[inline]
     pub fn in_step(contact: WheelContact, indentation: f64, change: f64, time_step: f64) -> Self {
         match contact {
@@ -40,7 +41,7 @@ impl WheelLaw {
         }
     }
 
-    /// The force, where it is given, N.
+    /// The force, if it is given, N.
     #[inline]
     pub fn given(&self) -> Option<f64> {
         match *self {
@@ -82,7 +83,7 @@ impl WheelLaw {
         }
     }
 
-    /// The tangent at an indentation that touches, as `δ = flexibility F + rest`, m/N and m.
+    /// The tangent at an indentation in contact, as `δ = flexibility F + rest`, m/N and m.
     #[inline]
     pub fn line(&self, indentation: f64) -> (f64, f64) {
         let flexibility = 1.0 / self.stiffness(indentation);
@@ -94,13 +95,13 @@ impl WheelLaw {
         }
     }
 
-    /// The indentation of a wheel that approaches by `approach` (m) a rail that yields by `compliance` (m/N) under it:
-    /// `δ + compliance F(δ) = approach`.
+    /// The indentation of a wheel that approaches the rail by `approach` (m) if the rail yields by `compliance` (m/N)
+    /// under it: `δ + compliance F(δ) = approach`.
     #[inline]
     pub fn behind(&self, approach: f64, compliance: f64) -> f64 {
         match *self {
             WheelLaw::Hertz { .. } if approach > 0.0 => {
-                // Convex and growing: Newton's method comes down to the root from above.
+                // The function is convex and growing: Newton's method converges to the root from above.
                 let mut indentation = approach;
                 for _ in 0..NEWTON_LIMIT {
                     let excess = indentation + compliance * self.force(indentation) - approach;
@@ -118,7 +119,7 @@ impl WheelLaw {
         }
     }
 
-    /// The indentation under `force` (N), m; 0 where the force is given.
+    /// The indentation under `force` (N), m; 0 if the force is given.
     pub fn indentation(&self, force: f64) -> f64 {
         match *self {
             WheelLaw::Hertz { constant } => (force.max(0.0) / constant).powf(2.0 / 3.0),

@@ -1,6 +1,6 @@
-//! What a passage costs.
+//! The computing effort of a passage.
 
-/// What a passage has cost so far.
+/// The computing effort of a passage so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counters {
     pub steps: usize,
@@ -10,8 +10,8 @@ pub struct Counters {
     pub most_iterations: usize,
     /// The most supports of one step that were not closed.
     pub most_open_supports: usize,
-    /// Steps that were taken back for shorter ones.
+    /// Steps that were taken back and replaced by shorter steps.
     pub rejected: usize,
-    /// Steps kept although their error was above the tolerance, as no shorter one was at hand.
+    /// Steps kept although their error was above the tolerance, because the ladder has no shorter step.
     pub beyond_tolerance: usize,
 }

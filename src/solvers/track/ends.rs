@@ -1,36 +1,36 @@
-//! Rail ends behind which the track goes on.
+//! Rail ends beyond which the track goes on.
 //!
-//! The static stiffness of the track beyond an end is that of a half-infinite beam on a Winkler foundation (deflection and
-//! rotation, λ⁴ = k/4EI):
+//! The static stiffness of the track beyond an end is the stiffness of a half-infinite beam on a Winkler foundation
+//! (deflection and rotation, λ⁴ = k/4EI):
 //!
 //! ```text
 //! F = 4EIλ³ w ± 2EIλ² θ,   M = ±2EIλ² w + 2EIλ θ      (+ at the right end, - at the left)
 //! ```
 //!
-//! A wheel at distance d beyond an end acts on it through that beam, as the beam's shape says, and sinks by more than the shape
-//! as if the end were clamped:
+//! A wheel at distance d beyond an end acts on the end through that beam, by the shape of the beam. Its deflection is
+//! larger than the shape by the deflection of a beam clamped at the end:
 //!
 //! ```text
 //! φ_w = e^{-λd} (cos λd + sin λd),   φ_θ = ±e^{-λd} sin λd/λ,   c = λ/2k (1 - φ_w² - 2 e^{-2λd} sin² λd)
 //! ```
 //!
-//! Waves are met by dampers along the rail before the end, `c(x) = c_end ξ²` with ξ from 0 at the layer's inner end to 1 at the
-//! rail's end: damping that starts at once would reflect them.
+//! Waves are damped by dampers along the rail before the end, `c(x) = c_end ξ²`, with ξ from 0 at the inner end of the
+//! layer to 1 at the end of the rail. A damping that begins with a jump would reflect the waves.
 
 use super::beam::add_element;
 use super::mesh::Track;
 use super::model::{Foot, RailEnds, TrackLevel};
 use crate::linalg::banded::SymmetricBanded;
 
-/// Length of the damped layer, m, where the track is at least four times as long.
+/// Length of the damped layer, m, if the track is at least four times as long.
 const LAYER: f64 = 5.0;
-/// Damping at the very end in units of √(k m), k the foundation and m the rail, both per metre.
+/// Damping at the very end in units of √(k m); k is the foundation and m the rail, both per metre.
 const DAMPING: f64 = 3.0;
 
-/// A wheel may stand so far beyond an end, in units of 1/λ, and not be felt there.
+/// Distance beyond an end, in units of 1/λ, from which a wheel has no effect on the end.
 const FELT: f64 = 10.0;
 
-/// What continues a rail beyond one of its ends.
+/// The continuation of a rail beyond one of its ends.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Continuation {
     /// EI, N m^2.
@@ -44,7 +44,7 @@ pub(super) struct Continuation {
 }
 
 impl Continuation {
-    /// None where the track ends with its rail.
+    /// None if the track ends with its rail.
     pub fn new(track: &Track, end: usize) -> Option<Self> {
         let model = &track.model;
         if model.rail_ends != RailEnds::Absorbing {
@@ -74,7 +74,7 @@ impl Continuation {
         (self.foundation / (4.0 * self.bending_stiffness)).powf(0.25)
     }
 
-    /// Distance from which a wheel beyond the end is felt there, m.
+    /// Distance beyond the end within which a wheel acts on the end, m.
     pub fn reach(&self) -> f64 {
         FELT / self.decay()
     }
@@ -96,7 +96,7 @@ impl Continuation {
         [[0.75 * self.mass / decay, coupling], [coupling, self.mass / (8.0 * decay.powi(3))]]
     }
 
-    /// Over deflection and rotation of the end.
+    /// Stiffness over deflection and rotation of the end.
     fn stiffness(&self) -> [[f64; 2]; 2] {
         let ei = self.bending_stiffness;
         let decay = self.decay();
@@ -138,14 +138,15 @@ pub(super) fn add_mass(track: &Track, matrix: &mut SymmetricBanded) {
     }
 }
 
-/// The forces by which the settled track beyond the ends pulls them to its level: end, unknown and N or N m per metre of level.
+/// The forces by which the settled track beyond the ends pulls the ends to its level: end, unknown, and N or N m per
+/// metre of level.
 pub(super) fn pulls(track: &Track) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
     let of_end =
         |end: usize| Continuation::new(track, end).map(|beyond| (end, end_unknown(track, end), beyond.stiffness()));
     [0, 1].into_iter().filter_map(of_end).flat_map(|(end, w, k)| [(end, w, k[0][0]), (end, w + 1, k[1][0])])
 }
 
-/// What the track beyond both ends carries, N.
+/// Force carried by the track beyond both ends, N.
 pub(super) fn carried(track: &Track, level: &TrackLevel, u: &[f64]) -> f64 {
     let of_end = |end: usize| {
         Continuation::new(track, end).map_or(0.0, |beyond| {

@@ -1,8 +1,9 @@
-//! The largest and smallest of what happens during a passage.
+//! The largest and smallest values during a passage.
 
 use super::view::{Observer, StepView};
 
-/// An [`Observer`] that keeps extremes; empty until it has seen the start. Lists run over seats, wheels or nodes.
+/// An [`Observer`] that keeps extremes; it is empty until it has observed the start. Lists run over seats, wheels or
+/// nodes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Envelope {
     /// Force of the rail on each pad, smallest and largest, N.
@@ -11,12 +12,13 @@ pub struct Envelope {
     pub contact_forces: Vec<f64>,
     /// Largest downward displacement of each sleeper or slab seat from the unloaded state, m.
     pub foot_displacements: Vec<f64>,
-    /// Time in which each sleeper's support carried nothing, s.
+    /// Time in which the support of each sleeper carried no force, s.
     pub contact_losses: Vec<f64>,
-    /// Row by row for each seat: the largest contact force while each wheel was the nearest to the seat, N. A wheel that
-    /// never was the nearest, or a seat without a sleeper, has 0.
+    /// Row by row for each seat: the largest contact force while each wheel was the nearest wheel to the seat, N. The
+    /// value is 0 for a wheel that was never the nearest, and for a seat without a sleeper.
     pub axle_peaks: Vec<f64>,
-    /// Row by row for each seat, like `axle_peaks`: how far the sleeper presses its support below its unloaded level at most, m.
+    /// Row by row for each seat, like `axle_peaks`: the largest displacement of the support under the sleeper below its
+    /// unloaded level, m.
     pub axle_deflections: Vec<f64>,
     /// Smallest and largest force of each wheel, N.
     pub wheel_forces: Vec<(f64, f64)>,
@@ -25,7 +27,7 @@ pub struct Envelope {
     /// Downward displacement of each rail node from the unloaded state, smallest and largest, m.
     pub rail_displacements: Vec<(f64, f64)>,
     moments: Vec<f64>,
-    /// Wheels from left to right, and the nearest of them to the seat that was looked at last.
+    /// Wheels from left to right, and the wheel nearest to the seat that was evaluated last.
     along: Vec<usize>,
     near: usize,
 }
@@ -38,13 +40,13 @@ fn widen(range: &mut (f64, f64), value: f64) {
 }
 
 impl Envelope {
-    /// The peak contact force of a seat for each wheel in turn, N.
+    /// The peak contact force of a seat for each wheel, N.
     pub fn axle_peaks_of(&self, seat: usize) -> &[f64] {
         let wheels = self.wheel_forces.len();
         &self.axle_peaks[seat * wheels..(seat + 1) * wheels]
     }
 
-    /// The largest deflection of a seat's support for each wheel in turn, m.
+    /// The largest deflection of the support of a seat for each wheel, m.
     pub fn axle_deflections_of(&self, seat: usize) -> &[f64] {
         let wheels = self.wheel_forces.len();
         &self.axle_deflections[seat * wheels..(seat + 1) * wheels]
@@ -68,7 +70,7 @@ impl Envelope {
             near: 0,
         };
         let positions = view.wheel_positions();
-        // Where two wheels are as near, the first of the train counts.
+        // If two wheels are equally near, the first of the train counts.
         self.along.sort_by(|a, b| positions[*a].total_cmp(&positions[*b]).then(b.cmp(a)));
     }
 }

@@ -1,32 +1,34 @@
-//! What can go wrong between a track model and its passages, each with the place and time a caller needs to point at it.
+//! Errors of a track model and its passages, each with the place and time that a caller needs to report it.
 
 use super::support::SupportPhase;
 use std::fmt;
 
-/// Why a track, or a train over it, has no answer.
+/// Why a track, or a train over it, has no result.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TrackError {
     /// The model contradicts itself near `x` (m).
     Model { x: f64, flaw: Flaw },
-    /// A number of the call is out of its range.
+    /// An argument is out of its range.
     Parameter { name: TrackParameter, value: f64, expected: &'static str },
     /// A wheel or a load stands outside the track.
     OffTrack { x: f64, start: f64, end: f64 },
-    /// Nothing holds the track near `x` (m), or a vehicle whose leading wheel is there: it moves without resistance.
+    /// Nothing holds the track near `x` (m), or the vehicle whose leading wheel is at `x`: it moves without resistance.
     Mechanism { x: f64 },
-    /// No set of closed supports was found that is in equilibrium; `x` (m) is where it last changed.
+    /// No set of closed supports in equilibrium was found; `x` (m) is the place of the last change.
     NoEquilibrium { x: f64, iterations: usize },
-    /// The contacts of a time step did not settle; `x` (m) is where they last changed, `contact` what is there.
+    /// The contacts of a time step did not converge; `x` (m) is the place of the last change, `contact` the contact
+    /// there.
     StepNotConverged { step: usize, time: f64, x: f64, contact: Unsettled },
-    /// A wheel force (N) is so many times its static value that the answer means nothing; `x` (m) is the seat that bears most.
+    /// A wheel force (N) is `times` its static value, so large that the result means nothing; `x` (m) is the seat with
+    /// the largest load.
     RanAway { x: f64, force: f64, times: f64 },
-    /// A step (s) is longer than a contact bears whose force acts from one step to the next: at `x` (m) by `limit` (s).
+    /// A step (s) is longer than the `limit` (s) of an explicit contact at `x` (m).
     StepTooLong { time_step: f64, limit: f64, x: f64, contact: Explicit },
-    /// A value has gone beyond sense, or is no number: the step is too long for what happens at `x` (m).
+    /// A value is beyond its limit or is not a number: the step is too long for the motion at `x` (m).
     Unstable { step: usize, time: f64, x: f64, what: Wild },
 }
 
-/// What contradicts itself in a model.
+/// The part of a model that contradicts itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flaw {
     Ends,
@@ -53,11 +55,12 @@ pub enum Flaw {
     AuxiliaryRail,
 }
 
-/// A number of a call, by the part that it belongs to; where a part has several, with the words for it.
+/// A parameter of a call, by the part that it belongs to; if a part has several parameters, with the name of the
+/// parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrackParameter {
     TimeStep,
-    /// A share by which a scheme damps.
+    /// A damping parameter of a scheme.
     Damping(&'static str),
     /// The tolerance of a step.
     Tolerance,
@@ -76,7 +79,7 @@ pub enum TrackParameter {
     Wheel(&'static str),
 }
 
-/// A contact whose force is computed from what is known at the beginning of a step.
+/// A contact whose force is computed from the state at the beginning of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Explicit {
     /// The support of an ordinary sleeper.
@@ -84,18 +87,18 @@ pub enum Explicit {
     Wheel,
 }
 
-/// The contact that was last moved in a step whose contacts do not settle.
+/// The contact that changed last in a step whose contacts do not converge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Unsettled {
-    /// A wheel by its number from 1 with its force, N, and indentation, m.
+    /// A wheel: its number from 1, its force, N, and its indentation, m.
     Wheel { number: usize, force: f64, indentation: f64 },
-    /// A support by the number of its sleeper from 1 with its gap, m.
+    /// A support: the number of its sleeper from 1, its phase, and its gap, m.
     Support { sleeper: usize, phase: SupportPhase, gap: f64 },
     /// None, on a track without wheels and sleepers.
     Nothing,
 }
 
-/// A value that has gone beyond sense.
+/// A value beyond its limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Wild {
     /// Force of a wheel, N.
@@ -112,26 +115,29 @@ impl fmt::Display for TrackError {
             TrackError::OffTrack { x, start, end } => {
                 write!(f, "x = {x} m lies outside the track, which reaches from {start} m to {end} m")
             }
-            TrackError::Mechanism { x } => write!(f, "nothing holds the track or vehicle at x = {x} m"),
+            TrackError::Mechanism { x } => write!(f, "nothing holds the track or the vehicle at x = {x} m"),
             TrackError::NoEquilibrium { x, iterations } => {
-                write!(f, "no equilibrium after {iterations} iterations, the supports near x = {x} m keep changing")
+                write!(f, "no equilibrium after {iterations} iterations; the contacts near x = {x} m still change")
             }
             TrackError::StepNotConverged { step, time, x, contact } => {
-                write!(f, "contacts near x = {x} m did not settle in step {step} at {time} s, last {contact}")
+                write!(
+                    f,
+                    "the contacts near x = {x} m did not converge in step {step} at {time} s; the last to change: {contact}"
+                )
             }
             TrackError::RanAway { x, force, times } => {
-                write!(f, "a wheel force of {:.0} kN near x = {x} m, {times:.0} times the static one", force / 1e3)
+                write!(f, "the wheel force near x = {x} m is {:.0} kN, {times:.0} times the static force", force / 1e3)
             }
             TrackError::StepTooLong { time_step, limit, x, contact } => write!(
                 f,
-                "a time step of {:.3} us is too long for {contact} at x = {x} m, which allows {:.3} us",
+                "a time step of {:.3} us is too long for {contact} at x = {x} m; the longest stable step is {:.3} us",
                 1e6 * time_step,
                 1e6 * limit
             ),
             TrackError::Unstable { step, time, x, what } => write!(
                 f,
-                "the motion is unstable: {what} at x = {x} m in step {step} at {time} s; a shorter \
-                 step or more damping of fast motion holds it"
+                "the motion is unstable: {what} at x = {x} m in step {step} at {time} s; take a shorter \
+                 step or more damping of fast motion"
             ),
         }
     }
@@ -142,31 +148,31 @@ impl std::error::Error for TrackError {}
 impl fmt::Display for Flaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Flaw::Ends => "the right end of the track is not right of its left end",
-            Flaw::Irregularity => "the irregularity is not a number or has a gap",
-            Flaw::RailGap => "the rail sections do not follow each other",
+            Flaw::Ends => "the chainage of the right end of the track is not above the chainage of its left end",
+            Flaw::Irregularity => "the irregularity is not a finite number or has a gap",
+            Flaw::RailGap => "two rail sections leave a gap or overlap, or a section has no length",
             Flaw::Rail => "the rail has no bending stiffness or a negative mass",
             Flaw::RailShear => "the rail has no shear stiffness or a negative rotary inertia",
             Flaw::RailShort => "the rail sections do not reach the end of the track",
-            Flaw::Joint => "a joint does not lie between the ends of the rail",
-            Flaw::SlabOverlap => "a slab overlaps another one or the end of the track",
-            Flaw::Slab => "a slab lacks bending or foundation stiffness, or has a negative mass or damping",
+            Flaw::Joint => "a joint lies outside the rail",
+            Flaw::SlabOverlap => "a slab overlaps another slab or reaches beyond the end of the track",
+            Flaw::Slab => "a slab has no bending stiffness or no foundation stiffness, or a negative mass or damping",
             Flaw::SeatOutside => "a seat lies outside the track",
-            Flaw::SeatOrder => "two seats share a place or are out of order",
+            Flaw::SeatOrder => "two seats lie at the same chainage or are out of order",
             Flaw::Pad => "a pad has no stiffness or a negative damping",
-            Flaw::Seating => "a seating is not softer than its support, or lacks stiffness or closure",
-            Flaw::Sleeper => "a sleeper lacks mass or support stiffness, or has a negative damping",
-            Flaw::Carried => "a sleeper carried from outside has no mass",
-            Flaw::UnderPad => "an under sleeper pad lacks mass or stiffness, or has a negative damping",
-            Flaw::Pitch => "a sleeper that turns lacks inertia, or its rail pad stiffness against turning",
+            Flaw::Seating => "a seating is not softer than its support, or has no stiffness or no closure",
+            Flaw::Sleeper => "a sleeper has no mass or no support stiffness, or a negative damping",
+            Flaw::Carried => "a sleeper that external forces carry has no mass",
+            Flaw::UnderPad => "an under sleeper pad has no mass or no stiffness, or a negative damping",
+            Flaw::Pitch => "a sleeper that turns has no rotary inertia, or its rail pad has no rotational stiffness",
             Flaw::Unsupported => {
-                "a sleeper is carried by forces from outside, which this time step does not have: give it a support"
+                "external forces carry a sleeper, but this time integration has no external forces: give it a support"
             }
-            Flaw::NoSlab => "no slab under the seat",
+            Flaw::NoSlab => "no slab lies under the seat",
             Flaw::AuxiliaryRailOutside => "an auxiliary rail reaches beyond the track",
             Flaw::AuxiliaryRailShort => "an auxiliary rail lies on fewer than two seats",
             Flaw::AuxiliaryRail => {
-                "an auxiliary rail lacks bending or pad stiffness, or has a negative mass or damping"
+                "an auxiliary rail has no bending stiffness or no pad stiffness, or a negative mass or damping"
             }
         })
     }
@@ -206,10 +212,10 @@ impl fmt::Display for Unsettled {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Unsettled::Wheel { number, force, indentation } => {
-                write!(f, "wheel {number} with {force:.0} N at an indentation of {indentation:.3e} m")
+                write!(f, "wheel {number} (force {force:.0} N, indentation {indentation:.3e} m)")
             }
             Unsettled::Support { sleeper, phase, gap } => {
-                write!(f, "the support of sleeper {sleeper}, {} at a gap of {gap:.3e} m", phase.word())
+                write!(f, "the support of sleeper {sleeper} ({}, gap {gap:.3e} m)", phase.word())
             }
             Unsettled::Nothing => write!(f, "no support"),
         }

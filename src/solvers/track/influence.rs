@@ -1,9 +1,11 @@
-//! One time step of one track, factored once: the effective matrix and how far forces at its contacts reach within the step.
+//! One time step of one track, factored once: the effective matrix, and the displacements by forces at the contacts
+//! within the step.
 //!
-//! With all supports closed the equation of a step is linear in the acceleration at its end, `M̂ a_{n+1} = r_n + (1-αf) q`,
-//! where q are the wheel forces and what open supports fail to carry. The displacement that q adds is `A q` with
-//! `A = (1-αf) β Δt² M̂⁻¹`, and A decays within a fraction of a metre for short steps: each of its columns is kept where it is
-//! not negligible, so memory grows with the length of the track and not with its square.
+//! With all supports closed the equation of a step is linear in the acceleration at its end,
+//! `M̂ a_{n+1} = r_n + (1-αf) q`. Here q are the wheel forces and the forces by which supports that are not closed
+//! differ from closed supports. The displacement by q is `A q` with `A = (1-αf) β Δt² M̂⁻¹`. For short steps A decays
+//! within a fraction of a metre, so each of its columns is kept only at the unknowns at which it is not negligible.
+//! Memory grows with the length of the track, not with its square.
 
 use super::scheme::Scheme;
 use super::{Track, TrackError};
@@ -26,11 +28,11 @@ pub struct Stepper {
     pub(super) of_sleeper_at_sleepers: Vec<Window>,
 }
 
-/// Part of a column's largest entry below which the rest of the column is dropped.
+/// Share of the largest entry of a column below which the rest of the column is dropped.
 const NEGLIGIBLE: f64 = 1e-18;
 
 impl Stepper {
-    /// Factors one step; fails where the track is a mechanism without mass, or where a sleeper has no support of its own.
+    /// Factors one step; fails if the track is a mechanism without mass, or if a sleeper has no support of its own.
     pub fn new(track: Arc<Track>, scheme: Scheme) -> Result<Self, TrackError> {
         track.check_supported()?;
         let (of_mass, of_damping, of_stiffness) = scheme.effective();

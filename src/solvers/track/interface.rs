@@ -1,7 +1,7 @@
-//! The contacts of one time step: wheel forces and the supports that are not closed, all else being linear.
+//! The contacts of one time step: wheel forces and the supports that are not closed. Everything else is linear.
 //!
-//! Unknowns are the wheel forces F and, for each support that is not closed, the force q by which it falls short of its
-//! closed line. With the compliances A (track), B (vehicle) and L (rail within its element):
+//! Unknowns are the wheel forces F and, for each support that is not closed, the difference q between its closed line
+//! and its force. A (track), B (vehicle) and L (rail within its element) are compliances:
 //!
 //! ```text
 //! wheel:      δ = δ_free - (A + B + L) F - A q,   F = F(δ)
@@ -11,9 +11,10 @@
 //! every gap:  g = g_free + A F + A q
 //! ```
 //!
-//! One Newton iteration linearises the wheels and moves the supports that contradict their phase. The matrix is symmetric and
-//! quasi-definite; ordered along the track it is a skyline whose rows reach back as far as a force is felt. The step has one solution (see `support`); after [`FLIP_ALL`] iterations only the first contradiction is
-//! moved, once the wheels are settled for the present phases, which ends by Murty's least-index argument.
+//! One Newton iteration linearises the wheels and moves the supports that contradict their phase. The matrix is
+//! symmetric and quasi-definite; ordered along the track it is a skyline matrix whose rows reach back as far as a force
+//! has an effect. The step has one solution (see `support`). After [`FLIP_ALL`] iterations only the first contradiction
+//! is moved, after the wheels have converged for the present phases; this ends by Murty's least-index argument.
 
 use super::WheelContact;
 use super::contact::WheelLaw;
@@ -65,7 +66,7 @@ pub(super) struct Interface {
     rhs: Vec<f64>,
 }
 
-/// What of an [`Interface`] the next step depends on.
+/// The part of an [`Interface`] on which the next step depends.
 #[derive(Debug, Clone, Default)]
 pub(super) struct InterfaceState {
     points: Vec<RailPoint>,
@@ -81,7 +82,7 @@ pub(super) enum ContactIndex {
     Support(usize),
 }
 
-/// What a solved step took.
+/// The effort of a solved step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Effort {
     pub iterations: usize,
@@ -89,16 +90,16 @@ pub(super) struct Effort {
     pub active: usize,
 }
 
-/// Iterations that move every contradicting support at once and take full Newton steps.
+/// Iterations that move all contradicting supports at once and take full Newton steps.
 const FLIP_ALL: usize = 12;
-/// Wheel forces are converged to this part of their size.
+/// Wheel forces are converged to this share of their value.
 const FORCE_TOLERANCE: f64 = 1e-11;
-/// Indentations below this are none, m.
+/// Indentations below this count as zero, m.
 const INDENTATION_ROUNDING: f64 = 1e-16;
 
 impl Interface {
-    /// Contacts of wheels at `positions` (m), vehicle by vehicle with the drop of its wheels per wheel force, and of
-    /// `sleepers` supports.
+    /// Contacts of wheels at `positions` (m), and of `sleepers` supports. `vehicles` gives, for each vehicle, its
+    /// wheels and the drop of its wheels per wheel force.
     pub fn new(vehicles: Vec<(Vec<WheelContact>, DMatrix<f64>)>, positions: &[f64], sleepers: usize) -> Self {
         let (contacts, compliances): (Vec<_>, Vec<_>) = vehicles.into_iter().unzip();
         let contacts: Vec<WheelContact> = contacts.into_iter().flatten().collect();
@@ -147,7 +148,7 @@ impl Interface {
         self.gaps.clone_from(gaps);
     }
 
-    /// Goes on in steps `ratio` times as long.
+    /// Continues in steps `ratio` times as long.
     pub fn scale_trends(&mut self, ratio: f64) {
         self.trends.iter_mut().for_each(|trend| *trend *= ratio);
     }
@@ -157,8 +158,8 @@ impl Interface {
         self.reach.set_vehicle(vehicle, compliance);
     }
 
-    /// Solves the contacts of a step whose points, free indentations, lines and free gaps are set; fails with the contact
-    /// that was last moved.
+    /// Solves the contacts of a step whose points, free indentations, lines and free gaps are set. The error is the
+    /// contact that was moved last.
     pub fn solve(&mut self, stepper: &Stepper) -> Result<Effort, ContactIndex> {
         self.reach.gather(stepper, &self.points);
         for j in 0..self.points.len() {
@@ -215,7 +216,7 @@ impl Interface {
         self.lines[sleeper].force(phase, self.gaps[sleeper], self.corrections[sleeper]).max(0.0)
     }
 
-    /// A contact and the state it is in.
+    /// A contact and its present state.
     pub fn describe(&self, contact: ContactIndex) -> Unsettled {
         match contact {
             ContactIndex::Wheel(rank) => {
@@ -235,7 +236,7 @@ impl Interface {
         self.reach.wheels[rank].wheel
     }
 
-    /// Moves what given forces displace into the free indentations and gaps.
+    /// Adds the displacements by given forces to the free indentations and gaps.
     fn take_given(&mut self) {
         let mut any = false;
         for (ranked, answer) in self.reach.wheels.iter().zip(&mut self.answers) {
@@ -327,7 +328,8 @@ impl Interface {
         }
     }
 
-    /// Indentations that follow from the forces; returns the worst wheel whose law is not met yet.
+    /// Moves the indentations to those that follow from the forces; returns the wheel farthest from its law, if any
+    /// wheel does not meet its law.
     fn move_wheels(&mut self, damping: f64) -> Option<usize> {
         for (next, ranked) in self.next.iter_mut().zip(&self.reach.wheels) {
             *next = self.free_indentations[ranked.wheel];
@@ -371,7 +373,7 @@ impl Interface {
         }
     }
 
-    /// Moves the supports that contradict their phase, or the first of them; returns the last one moved.
+    /// Moves all supports that contradict their phase, or only the first; returns the support that was moved last.
     fn move_supports(&mut self, only_first: bool) -> Option<usize> {
         let mut moved = None;
         for s in 0..self.phases.len() {

@@ -1,10 +1,10 @@
-//! The unevenness of the rail's running surface: a wheel sees the rail at w(x) + r(x).
+//! The unevenness of the running surface of the rail: a wheel runs on w(x) + r(x).
 
 use super::error::{TrackError, TrackParameter};
 use serde::{Deserialize, Serialize};
 
-/// r over x, m below the even surface: cubics side by side, none where the surface is even. Beyond the outer ends it stays as
-/// there, so a surface that does not end level has a kink there.
+/// r over x, m below the even surface: cubics side by side, none if the surface is even. Beyond the outer ends r keeps
+/// its end value, so a surface that is not level at its end has a kink there.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Irregularity {
     cubics: Vec<Cubic>,
@@ -13,7 +13,7 @@ pub struct Irregularity {
 /// r between two chainages, by its values and second derivatives at both.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Cubic {
-    /// m, growing.
+    /// m, increasing.
     pub ends: [f64; 2],
     /// m.
     pub values: [f64; 2],
@@ -27,15 +27,15 @@ impl Irregularity {
         Self { cubics }
     }
 
-    /// Straight between points (chainage and r, m); fails where chainages do not grow.
+    /// Straight lines between points (chainage and r, m); fails if the chainages do not increase.
     pub fn linear(points: Vec<(f64, f64)>) -> Result<Self, TrackError> {
         check(&points)?;
         let level = vec![0.0; points.len()];
         Ok(Self::through(&points, &level))
     }
 
-    /// The cubic spline through points (chainage and r, m) whose curvature is zero at both ends; fails where chainages do
-    /// not grow.
+    /// The cubic spline through points (chainage and r, m) with zero curvature at both ends; fails if the chainages do
+    /// not increase.
     pub fn spline(points: Vec<(f64, f64)>) -> Result<Self, TrackError> {
         check(&points)?;
         let curvatures = natural_curvatures(&points);
@@ -66,7 +66,7 @@ impl Irregularity {
         s * cubic.values[0] + t * cubic.values[1] + length * length / 6.0 * bend
     }
 
-    /// The first chainage at which the cubics are not numbers, or stand farther apart than `gap`, m.
+    /// The first chainage at which the cubics are not finite or leave a gap wider than `gap`, m.
     pub(super) fn flaw(&self, gap: f64) -> Option<f64> {
         let broken = |cubic: &&Cubic| {
             let numbers = cubic.ends.iter().chain(&cubic.values).chain(&cubic.curvatures).all(|v| v.is_finite());
@@ -88,7 +88,7 @@ fn check(points: &[(f64, f64)]) -> Result<(), TrackError> {
     }
     match points.windows(2).find(|pair| pair[1].0 <= pair[0].0) {
         Some(pair) => {
-            fail(TrackParameter::Irregularity("chainage in an irregularity"), pair[1].0, "above the one before")
+            fail(TrackParameter::Irregularity("chainage in an irregularity"), pair[1].0, "above the chainage before it")
         }
         None => Ok(()),
     }

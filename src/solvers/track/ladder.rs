@@ -1,4 +1,4 @@
-//! One time step halved again and again, and what a passage needs to choose among them: where it was before the step.
+//! One time step halved again and again, and the data that a passage needs to choose a step: its state before the step.
 
 use super::error::TrackError;
 use super::influence::Stepper;
@@ -36,7 +36,8 @@ pub(super) struct Before {
 }
 
 impl Ladder {
-    /// Prepares the step of `scheme` and its first `halvings` halves; fails where the track is a mechanism without mass.
+    /// Prepares the step of `scheme` and its first `halvings` halves; fails if the track is a mechanism without
+    /// mass.
     pub fn new(track: &Arc<Track>, scheme: Scheme, halvings: usize) -> Result<Self, TrackError> {
         let rung = |n: usize| {
             let scheme = scheme.with_time_step(scheme.time_step / (1u64 << n.min(32)) as f64)?;

@@ -1,4 +1,4 @@
-//! The meshed track: its nodes, its unknowns and its matrices, and what a place on it is to them.
+//! The meshed track: its nodes, unknowns and matrices, and the relation of a place on the rail to them.
 
 use super::beam::Element;
 use super::error::{Flaw, TrackError, TrackParameter};
@@ -12,29 +12,30 @@ pub struct Track {
     pub(super) model: TrackModel,
     /// Chainage of the rail nodes, m.
     pub(super) nodes: Vec<f64>,
-    /// Unknown of the rail deflection at each node; the rotation is the next one, at a joint that of the rail left of it.
+    /// Unknown of the rail deflection at each node. The rotation is the next unknown; at a joint it is the rotation of
+    /// the rail left of it.
     pub(super) rail: Vec<usize>,
     /// Every unknown of the rail, in order.
     pub(super) rail_unknowns: Vec<usize>,
-    /// Between node i and node i + 1.
+    /// Element between node i and node i + 1.
     pub(super) elements: Vec<RailElement>,
     /// Node of each seat.
     pub(super) seat_nodes: Vec<usize>,
     pub(super) feet: Vec<FootUnknown>,
     pub(super) sleepers: Vec<SleeperSupport>,
-    /// Sleepers that forces from outside carry.
+    /// Sleepers carried by external forces.
     pub(super) carried: Vec<CarriedSleeper>,
     pub(super) slabs: Vec<BeamMesh>,
     pub(super) auxiliary_rails: Vec<BeamMesh>,
-    /// All supports closed, nothing held.
+    /// Stiffness with all supports closed and no unknown held.
     pub(super) stiffness: SymmetricBanded,
     pub(super) damping: SymmetricBanded,
     pub(super) mass: SymmetricBanded,
     /// Nodal forces of gravity, N and N m.
     pub(super) weight: Vec<f64>,
-    /// Gravity on rails and sleepers in all, N.
+    /// Total gravity on rails and sleepers, N.
     pub(super) dead_weight: f64,
-    /// Unknowns that are prescribed, and the rail end whose level they take; none for a rotation that is zero.
+    /// Prescribed unknowns, each with the rail end whose level it takes; none for a rotation that is zero.
     pub(super) held: Vec<(usize, Option<usize>)>,
 }
 
@@ -42,11 +43,11 @@ pub struct Track {
 pub(super) struct RailElement {
     pub beam: Element,
     pub unknowns: [usize; 4],
-    /// Where these stand in [`Track::rail_unknowns`].
+    /// Positions of these unknowns in [`Track::rail_unknowns`].
     pub columns: [usize; 4],
 }
 
-/// What the foot of a seat moves with.
+/// The unknown that moves the foot of a seat.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum FootUnknown {
     /// Index into [`Track::sleepers`].
@@ -59,14 +60,14 @@ pub(super) enum FootUnknown {
     Carried(usize),
 }
 
-/// A sleeper that forces from outside carry.
+/// A sleeper carried by external forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct CarriedSleeper {
     pub seat: usize,
-    /// Its unknown, and that of its underside, which is the same where there is no pad under it.
+    /// Unknown of the sleeper, and unknown of its underside; both are the same if there is no pad under the sleeper.
     pub unknown: usize,
     pub underside: usize,
-    /// Its rotation, as the slope of the rail: down with x. None where it stays level.
+    /// Its rotation, as the slope of the rail: down with x. None if the sleeper stays level.
     pub pitch: Option<usize>,
 }
 
@@ -99,7 +100,7 @@ pub(super) struct RailPoint {
     /// Distance from the element's left node, m.
     pub offset: f64,
     pub shape: [f64; 4],
-    /// Deflection at the point beyond that of the cubic per unit force there, m/N.
+    /// Deflection at the point per unit force there, minus the deflection of the cubic, m/N.
     pub local_compliance: f64,
 }
 
@@ -123,7 +124,7 @@ impl Track {
         self.weight.len()
     }
 
-    /// The place x (m) on the rail; fails outside the track.
+    /// The place x (m) on the rail; fails if x is outside the track.
     pub(super) fn rail_point(&self, x: f64) -> Result<RailPoint, TrackError> {
         let [start, end] = self.model.ends;
         let inside = start - SAME_PLACE <= x && x <= end + SAME_PLACE;
@@ -153,7 +154,8 @@ impl Track {
         RailPoint { element, offset, shape: beam.shape(offset), local_compliance }
     }
 
-    /// Deflection at one point under a unit force at another of the same element, beyond that of the cubic, m/N.
+    /// Deflection at one point under a unit force at another point of the same element, minus the deflection of the
+    /// cubic, m/N.
     #[inline]
     pub(super) fn local_deflection(&self, at: &RailPoint, load: &RailPoint) -> f64 {
         self.elements[at.element].beam.clamped_deflection(at.offset, load.offset)
@@ -165,7 +167,7 @@ impl Track {
         self.elements[element].unknowns
     }
 
-    /// The unknown of what a seat's pad stands on; none for ground that does not move.
+    /// The unknown under the pad of a seat; none for fixed ground.
     pub(super) fn foot_unknown(&self, seat: usize) -> Option<usize> {
         match self.feet[seat] {
             FootUnknown::Sleeper(s) => Some(self.sleepers[s].unknown),
@@ -175,20 +177,20 @@ impl Track {
         }
     }
 
-    /// The level of a prescribed unknown, m: that of its rail end, or 0 for a rotation.
+    /// The level of a prescribed unknown, m: the level of its rail end, or 0 for a rotation.
     pub(super) fn held_at<'a>(&'a self, level: &'a TrackLevel) -> impl Iterator<Item = (usize, f64)> + 'a {
         self.held.iter().map(|(unknown, end)| (*unknown, end.map_or(0.0, |end| level.ends[end])))
     }
 
-    /// Unknowns that are prescribed at rest, with their levels, m. To those that always are come the undersides of carried sleepers, which
-    /// lie level.
+    /// Unknowns that are prescribed at rest, with their levels, m: the unknowns that are always prescribed, and the
+    /// undersides of carried sleepers, which lie level.
     pub(super) fn held_at_rest<'a>(&'a self, level: &'a TrackLevel) -> impl Iterator<Item = (usize, f64)> + 'a {
         let undersides = self.carried.iter().map(|c| (c.underside, level.settlements[c.seat]));
         let pitches = self.carried.iter().filter_map(|c| c.pitch).map(|pitch| (pitch, 0.0));
         self.held_at(level).chain(undersides).chain(pitches)
     }
 
-    /// Fails where a sleeper has no support of its own.
+    /// Fails if a sleeper has no support of its own.
     pub(super) fn check_supported(&self) -> Result<(), TrackError> {
         match self.carried.first() {
             Some(c) => Err(TrackError::Model { x: self.model.seats[c.seat].x, flaw: Flaw::Unsupported }),
@@ -212,7 +214,7 @@ impl Track {
         }
     }
 
-    /// Sagging rail moment at a node, N m: the mean of both elements, without what loads inside them add.
+    /// Sagging rail moment at a node, N m: the mean of both elements, without the moments of loads inside the elements.
     #[inline]
     pub(super) fn cubic_moment(&self, node: usize, u: &[f64]) -> f64 {
         let moments = |element: &RailElement| element.beam.end_moments(element.unknowns.map(|i| u[i]));
@@ -224,8 +226,8 @@ impl Track {
         }
     }
 
-    /// What a force inside an element adds to the moment at `node`, N m: half the clamping moment, as the mean of both
-    /// elements takes half of each; all of it at an end of the rail.
+    /// Moment at `node` by a force inside an element, N m: half the clamping moment, because the mean of both elements
+    /// takes half of each; the full clamping moment at an end of the rail.
     #[inline]
     pub(super) fn clamping_moment(&self, node: usize, point: &RailPoint, force: f64) -> f64 {
         let share = if node == 0 || node == self.elements.len() { 1.0 } else { 0.5 };

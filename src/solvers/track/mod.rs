@@ -1,13 +1,13 @@
-//! One rail on its seats, and the vehicles that run over it: statics with lift-off, and passages in time.
+//! One rail on its seats, and the vehicles that run over it: statics with lift-off, and passages in the time domain.
 //!
-//! The rail is a beam after Euler–Bernoulli or Timoshenko, slabs and auxiliary rails are beams after Euler–Bernoulli, pads are
-//! springs and dampers, a sleeper is a mass on a support that can only push, and a vehicle is a linear multibody system on
-//! wheels that press on the rail by the law of Hertz, a spring or a given force. Displacements and forces are positive
-//! downward, moments positive where the rail sags, x grows to the right.
+//! The rail is an Euler–Bernoulli or Timoshenko beam; slabs and auxiliary rails are Euler–Bernoulli beams; pads are
+//! springs and dampers. A sleeper is a mass on a support that can only push. A vehicle is a linear multibody system on
+//! wheels that press on the rail by Hertz's law, a spring or a given force. Displacements and forces are positive
+//! downward, moments are positive if the rail sags, x increases to the right.
 //!
-//! [`TrackModel`] says what there is; [`Track`] is its mesh and matrices; [`solve_static`] finds the state at rest;
-//! [`Stepper`] factors one time step for all passages over that track; [`Passage`] runs one train over it and shows every
-//! step to an [`Observer`].
+//! [`TrackModel`] describes the track; [`Track`] is its mesh and matrices; [`solve_static`] finds the state at rest;
+//! [`Stepper`] factors one time step for all passages over that track; [`Passage`] runs one train over the track and
+//! passes every step to an [`Observer`].
 
 mod adaptive;
 mod assembly;

@@ -1,20 +1,20 @@
-//! The track as numbers, before it is meshed, and the checks that a mesh relies on. Everything belongs to one rail.
+//! The track as numbers before it is meshed, and the checks on which a mesh relies. All values are per rail.
 
 use super::error::{Flaw, TrackError, TrackParameter};
 use super::irregularity::Irregularity;
 use super::support::{Seating, Spring};
 use serde::{Deserialize, Serialize};
 
-/// What the track of one rail consists of; SI units.
+/// The parts of the track of one rail; SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrackModel {
     /// Chainage of the left and right end of the rail, m.
     pub ends: [f64; 2],
     /// Left to right, from end to end without gaps.
     pub rail: Vec<RailSection>,
-    /// Left to right, no two at one place.
+    /// Left to right, no two at the same place.
     pub seats: Vec<Seat>,
-    /// Left to right; two may touch but not overlap.
+    /// Left to right; two slabs may touch but not overlap.
     pub slabs: Vec<Slab>,
     /// Beside the rail; they may overlap.
     pub auxiliary_rails: Vec<AuxiliaryRail>,
@@ -43,7 +43,7 @@ pub struct RailSection {
     pub shear: Option<Shear>,
 }
 
-/// What Timoshenko's beam has beyond Euler–Bernoulli's.
+/// Additional properties of a Timoshenko beam, compared with Euler–Bernoulli.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Shear {
     /// κGA, N.
@@ -52,7 +52,7 @@ pub struct Shear {
     pub rotary_inertia: f64,
 }
 
-/// Further rails on the same sleepers or slab, together as one beam with free ends, on a pad of its own at every seat.
+/// Further rails on the same sleepers or slab, together one beam with free ends, on a separate pad at every seat.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AuxiliaryRail {
     /// Chainage of its ends, m; the seats between them carry it.
@@ -79,27 +79,28 @@ pub struct Seat {
     pub foot: Foot,
 }
 
-/// What a pad stands on.
+/// The support under a pad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Foot {
-    /// Half a sleeper (kg) on a support (N/m, N s/m) that pushes and never pulls; with a seating, its stiffness is less at
-    /// first.
+    /// Half a sleeper (kg) on a support (N/m, N s/m) that pushes and never pulls; with a seating the stiffness is lower
+    /// at first.
     Sleeper { mass: f64, support_stiffness: f64, support_damping: f64, seating: Option<Seating> },
-    /// Ground that does not move.
+    /// Fixed ground.
     Rigid,
-    /// The slab under the seat; the right one where two slabs meet.
+    /// The slab under the seat; the right slab if two slabs meet there.
     Slab,
-    /// Half a sleeper (kg) that forces from outside carry, step by step: grains under it, say. At rest its underside is held at
-    /// the settlement of its seat.
+    /// Half a sleeper (kg) carried step by step by external forces, for example of grains under it. At rest its
+    /// underside is held at the settlement of its seat.
     Carried { mass: f64, pad: Option<UnderPad>, pitch: Option<Pitch> },
 }
 
-/// How a carried sleeper turns about its axis across the track: as a body, held by the rail pad alone.
+/// Rotation of a carried sleeper about its axis across the track: a rigid body held by the rail pad alone.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Pitch {
     /// kg m^2, above 0.
     pub inertia: f64,
-    /// Stiffness of the rail pad against turning, N m/rad, above 0. Its damping is to it as that of the pad to its stiffness.
+    /// Stiffness of the rail pad against rotation, N m/rad, above 0. The ratio of its damping to its stiffness is the
+    /// same as for the pad.
     pub stiffness: f64,
 }
 
@@ -115,8 +116,8 @@ pub struct UnderPad {
 }
 
 impl UnderPad {
-    /// What the sleeper feels where the pad lies on a support: both in series, in the slow limit (k1 k2 / (k1 + k2), and each damper by
-    /// the square of the share of the compression that it sees).
+    /// The spring under the sleeper if the pad lies on a support: both in series, in the slow limit (k1 k2 / (k1 + k2);
+    /// each damper is weighted by the square of its share of the compression).
     pub fn on(&self, support: Spring) -> Spring {
         let (k, c) = (support.stiffness, support.damping);
         let series = |k: f64| k * self.stiffness / (k + self.stiffness);
@@ -129,8 +130,9 @@ impl UnderPad {
     }
 }
 
-/// Half a slab: a beam with free ends on a Winkler foundation that acts in both directions. Its level as built is that of the
-/// slab at rest: it lies there before the rail does, so its own weight has moved it already and moves it no further.
+/// Half a slab: a beam with free ends on a Winkler foundation that acts in both directions. The level as built is the
+/// level of the slab at rest. The slab lies there before the rail does, so its own weight causes no further
+/// displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Slab {
     /// Chainage of its ends, m.
@@ -146,7 +148,7 @@ pub struct Slab {
     pub foundation_damping: f64,
 }
 
-/// What holds the rail at both ends.
+/// The support of the rail at both ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RailEnds {
     /// Level given, rotation zero.
@@ -154,19 +156,19 @@ pub enum RailEnds {
     /// Level given.
     Pinned,
     Free,
-    /// The track goes on beyond the end: its static stiffness is kept, and waves die out in a layer before the end whose
-    /// damping grows towards it.
+    /// The track goes on beyond the end: the static stiffness of the continuation is kept, and waves are damped in a
+    /// layer before the end, with a damping that grows towards the end.
     Absorbing,
 }
 
-/// How far the track has settled; zeros are the track as built.
+/// Settlement of the track; zeros are the track as built.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrackLevel {
-    /// Downward displacement of the support under each seat, m; read for sleepers only. Feet that are carried from outside
-    /// are held at it at rest, and leave it as they move.
+    /// Downward displacement of the support under each seat, m; used for sleepers only. Feet carried by external forces
+    /// are held at this level at rest, and leave it as they move.
     pub settlements: Vec<f64>,
-    /// Level at which rail ends that are not free are held, m below the level as built. The level of the rail at rest, its
-    /// deflection under gravity included, leaves no bending at a clamped end.
+    /// Level at which rail ends are held unless they are free, m below the level as built. At the level of the rail at
+    /// rest, including its deflection under gravity, a clamped end has no bending.
     pub ends: [f64; 2],
 }
 
@@ -177,11 +179,11 @@ impl TrackLevel {
     }
 }
 
-/// Places closer than this are one, m.
+/// Places closer than this count as one place, m.
 pub(super) const SAME_PLACE: f64 = 1e-6;
 
 impl AuxiliaryRail {
-    /// Whether it lies on the seat at x.
+    /// Whether the auxiliary rail lies on the seat at x.
     pub(super) fn carries(&self, x: f64) -> bool {
         self.start - SAME_PLACE <= x && x <= self.end + SAME_PLACE
     }
@@ -191,7 +193,7 @@ fn fail(x: f64, flaw: Flaw) -> Result<(), TrackError> {
     Err(TrackError::Model { x, flaw })
 }
 
-/// Written so that a value that is not a number fails, as below.
+/// Written so that a value that is not a number fails; the same holds below.
 fn positive(value: f64) -> bool {
     value > 0.0 && value.is_finite()
 }
@@ -338,17 +340,17 @@ impl TrackModel {
         Ok(())
     }
 
-    /// Whether a part of the rail shears.
+    /// Whether a part of the rail has shear.
     pub(super) fn shears(&self) -> bool {
         self.rail.iter().any(|section| section.shear.is_some())
     }
 
-    /// Index of the slab under x, the right one where two meet.
+    /// Index of the slab under x; the right slab if two slabs meet there.
     pub(super) fn slab_under(&self, x: f64) -> Option<usize> {
         self.slabs.iter().rposition(|s| s.start - SAME_PLACE <= x && x <= s.end + SAME_PLACE)
     }
 
-    /// The median distance of neighbouring seats, m; the length of the track where there are none.
+    /// The median distance between neighbouring seats, m; the length of the track if it has none.
     pub(super) fn usual_bay(&self) -> f64 {
         let mut bays: Vec<f64> = self.seats.windows(2).map(|pair| pair[1].x - pair[0].x).collect();
         bays.sort_by(f64::total_cmp);

@@ -1,6 +1,6 @@
-//! Where a train is over time.
+//! The position of a train over time.
 //!
-//! Speed v is straight in x between the points of a profile. With the distance ξ gone since a point, `ξ' = v_0 + g ξ`, so
+//! The speed v is linear in x between the points of a profile. With the distance ξ from a point, `ξ' = v_0 + g ξ`, so
 //!
 //! ```text
 //! ξ = v_0 (exp(g t) - 1)/g,    t = ln(v_1/v_0)/g,    g = (v_1 - v_0)/(ξ_1 - ξ_0)
@@ -9,11 +9,11 @@
 use super::error::{TrackError, TrackParameter};
 use serde::{Deserialize, Serialize};
 
-/// The speed of a train, m/s, above 0 whatever its direction.
+/// The speed of a train, m/s, above 0 in both directions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Motion {
     Constant(f64),
-    /// Chainage of the leading wheel (m, growing) and speed; straight in between, constant beyond the outer points.
+    /// Chainage of the leading wheel (m, increasing) and speed; linear in between, constant beyond the outer points.
     ByChainage(Vec<(f64, f64)>),
 }
 
@@ -22,16 +22,16 @@ pub enum Motion {
 pub(super) struct Timetable {
     /// +1 or -1.
     sign: f64,
-    /// In the order in which they are run.
+    /// In the order of travel.
     pieces: Vec<Piece>,
     /// s, from start to finish.
     pub duration: f64,
 }
 
-/// A stretch on which the speed is straight in x.
+/// A part of the track on which the speed is linear in x.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Piece {
-    /// When and where it begins, s and m.
+    /// Time and place at which it begins, s and m.
     time: f64,
     x: f64,
     /// m/s, there.
@@ -56,8 +56,8 @@ impl Motion {
         }
     }
 
-    /// The run from `start` to `finish` (m); fails where a speed is not above 0, where chainages do not grow, or where the
-    /// finish does not lie ahead in the direction `sign`.
+    /// The run from `start` to `finish` (m). Fails if a speed is not above 0, if the chainages do not increase, or if
+    /// the finish does not lie ahead in the direction `sign`.
     pub(super) fn timetable(&self, start: f64, finish: f64, sign: f64) -> Result<Timetable, TrackError> {
         let fail = |name, value, expected| Err(TrackError::Parameter { name, value, expected });
         let distance = sign * (finish - start);
@@ -82,7 +82,7 @@ impl Motion {
             return fail(
                 TrackParameter::SpeedProfile("chainage in a speed profile"),
                 pair[1].0,
-                "above the one before",
+                "above the chainage before it",
             );
         }
         let mut places = vec![start];
@@ -124,7 +124,7 @@ mod tests {
         }
     }
 
-    /// Slower ahead of x = 10 m, faster behind x = 20 m: against a Runge–Kutta method, both ways.
+    /// Slower before x = 10 m, faster behind x = 20 m: compared with a Runge–Kutta method, in both directions.
     #[test]
     fn speed_by_chainage() {
         let motion = Motion::ByChainage(vec![(10.0, 40.0), (12.0, 10.0), (20.0, 15.0)]);

@@ -1,11 +1,12 @@
-//! What rolls: a linear multibody system of any size on any number of wheels, over one rail.
+//! A vehicle: a linear multibody system of any size on any number of wheels, over one rail.
 //!
 //! ```text
 //! M y'' + C y' + K y = weight - Σ F_w e_w,    δ_w = y_w - (rail and its irregularity under the wheel)
 //! ```
 //!
-//! M is diagonal, F_w is the force of wheel w on the rail and e_w picks the unknown that the wheel moves with. Displacements are
-//! positive down, rotations as seen in the direction of motion, so a train that runs the other way has the same matrices.
+//! M is diagonal, F_w is the force of wheel w on the rail and e_w selects the unknown that moves the wheel.
+//! Displacements are positive down, rotations as seen in the direction of travel, so a train has the same matrices in
+//! both directions.
 
 use super::error::{TrackError, TrackParameter};
 use nalgebra::DMatrix;
@@ -19,7 +20,7 @@ pub struct Multibody {
     pub stiffness: DMatrix<f64>,
     /// Symmetric, N s/m, N s and N m s.
     pub damping: DMatrix<f64>,
-    /// Per unknown, kg: what gravity pulls along it, which is 0 for a rotation.
+    /// Mass on which gravity acts along each unknown, kg; 0 for a rotation.
     pub weighing: Vec<f64>,
     /// Per unknown, N down: constant forces besides gravity; 0 for a rotation.
     pub forces: Vec<f64>,
@@ -30,7 +31,7 @@ pub struct Multibody {
 /// A wheel of a [`Multibody`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wheel {
-    /// The unknown that the wheel moves with; none for a force that is given.
+    /// The unknown that moves the wheel; none for a given force.
     pub unknown: Option<usize>,
     /// Distance behind the first wheel, m.
     pub offset: f64,
@@ -44,7 +45,7 @@ pub enum WheelContact {
     Hertz(f64),
     /// `F = k δ + c δ'` (N/m, N s/m), in both directions: a wheel that cannot lift off.
     Linear { stiffness: f64, damping: f64 },
-    /// This force, N down, whatever the rail does.
+    /// A given force, N down, independent of the rail.
     Given(f64),
 }
 
@@ -74,7 +75,7 @@ impl Multibody {
         }
     }
 
-    /// A force (N down) that rolls along: no unknown, one wheel.
+    /// A moving force (N down): no unknown, one wheel.
     pub fn moving_force(force: f64) -> Self {
         Self {
             masses: Vec::new(),
@@ -101,7 +102,7 @@ impl Multibody {
         self.wheels.iter().filter(|w| w.unknown.is_some()).count()
     }
 
-    /// The mean static force of the wheels whose force is not given, N; 0 without such wheels.
+    /// The mean static force of the wheels whose force is not given, N; 0 if there are no such wheels.
     pub(super) fn wheel_load(&self, gravity: f64) -> f64 {
         self.weight(gravity).iter().sum::<f64>() / self.carrying_wheels().max(1) as f64
     }
@@ -177,13 +178,13 @@ impl Wheel {
         }
         match (self.unknown, self.contact) {
             (Some(unknown), WheelContact::Given(_)) => {
-                fail(TrackParameter::Wheel("unknown of a wheel"), unknown as f64, "none under a given force")
+                fail(TrackParameter::Wheel("unknown of a wheel"), unknown as f64, "to be absent if the force is given")
             }
             (Some(unknown), _) if unknown >= order => {
                 fail(TrackParameter::Wheel("unknown of a wheel"), unknown as f64, "below the number of unknowns")
             }
             (None, WheelContact::Hertz(_) | WheelContact::Linear { .. }) => {
-                fail(TrackParameter::Wheel("unknowns of a wheel"), 0.0, "of 1 where the force is not given")
+                fail(TrackParameter::Wheel("unknowns of a wheel"), 0.0, "of 1 if the force is not given")
             }
             _ => Ok(()),
         }

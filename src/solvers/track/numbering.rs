@@ -1,9 +1,10 @@
-//! Where the nodes of a track stand, and how its unknowns are numbered.
+//! The positions of the nodes of a track, and the numbering of its unknowns.
 //!
-//! Nodes stand at every seat, joint, section boundary, end of a slab or auxiliary rail and rail end, with `elements_per_bay` elements between two seats and
-//! proportionally fewer in shorter stretches. Unknowns are numbered node by node - rail deflection and rotation (two
-//! rotations at a joint), sleeper, its underside, slab, auxiliary rails - so the half band is 5 with sleepers on one side and a
-//! slab on the other or with pads under sleepers, 7 where two slabs meet or beside one auxiliary rail.
+//! Nodes lie at every seat, joint, section boundary, end of a slab or auxiliary rail, and rail end. Between two seats
+//! there are `elements_per_bay` elements, in shorter stretches proportionally fewer. Unknowns are numbered node by
+//! node: rail deflection and rotation (two rotations at a joint), sleeper, its underside, slab, auxiliary rails. So the
+//! half band is 5 with sleepers on one side and a slab on the other or with pads under sleepers; it is 7 if two slabs
+//! meet or beside one auxiliary rail.
 
 use super::beam::Element;
 use super::mesh::{BeamMesh, CarriedSleeper, FootUnknown, RailElement};
@@ -109,7 +110,7 @@ impl Numbering {
         self.order += 2;
     }
 
-    /// The largest distance of two unknowns that act on each other.
+    /// The largest difference between two unknowns that act on each other.
     pub fn half_band(&self) -> usize {
         let mut half_band = 3;
         for (node, pair) in self.rail.windows(2).enumerate() {

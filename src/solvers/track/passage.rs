@@ -1,7 +1,7 @@
-//! One train over one track: its state, and one step of it.
+//! One train over one track: the state of the passage, and one step.
 //!
-//! A step solves the linear track with all supports closed, then the contacts ([`super::interface`]), and adds what the
-//! contact forces displace. Nothing is factored and nothing allocated while it runs.
+//! A step solves the linear track with all supports closed, then the contacts ([`super::interface`]), and adds the
+//! displacements by the contact forces. During the run no matrix is factored and no memory allocated.
 
 use super::counters::Counters;
 use super::error::{TrackError, TrackParameter, Wild};
@@ -15,22 +15,22 @@ use super::{Loads, Motion, StaticState, SupportPhase, TrackLevel, Train, WheelCo
 use crate::linalg::vector::add_scaled;
 use std::ops::Range;
 
-/// A displacement of the track beyond this is beyond sense, m; a rotation, rad.
+/// Limit of a displacement of the track, m; of a rotation, rad. A larger one means that the motion is unstable.
 pub(super) const WILD_DISPLACEMENT: f64 = 1.0;
-/// A wheel force beyond this many static ones is beyond sense.
+/// Limit of a wheel force, as a multiple of the static force. A larger one means that the motion is unstable.
 pub(super) const WILD_FORCE: f64 = 100.0;
 
-/// Whether a value makes sense; one that is not a number does not.
+/// Whether a value is within its limit; a value that is not a number is not.
 #[inline]
 pub(super) fn within(value: f64, limit: f64) -> bool {
     value.abs() <= limit
 }
 
-/// Which train runs from where to where.
+/// The train of a run, its start and its finish.
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
     pub train: &'a Train,
-    /// Chainage of the leading wheel at the start and at the finish, m; all wheels stand on the track at both.
+    /// Chainage of the leading wheel at the start and at the finish, m; at both, all wheels stand on the track.
     pub start: f64,
     pub finish: f64,
     pub motion: &'a Motion,
@@ -49,10 +49,10 @@ pub struct Passage<'a> {
     pub(super) tick_length: f64,
     pub(super) ticks_per_step: u64,
     pub(super) ticks_per_longest: u64,
-    /// Length of the last step, s; that of the first one at the start.
+    /// Length of the last step, s; at the start, length of the first step.
     pub(super) last_step: f64,
     pub(super) planned_ticks: u64,
-    /// How the length of a step is chosen; none where it is fixed.
+    /// How the length of a step is chosen; none if it is fixed.
     pub(super) choice: Option<Box<Choice<'a>>>,
     pub(super) displacement: Vec<f64>,
     pub(super) velocity: Vec<f64>,
@@ -62,9 +62,9 @@ pub struct Passage<'a> {
     pub(super) wheel_positions: Vec<f64>,
     /// Per sleeper, N.
     pub(super) support_forces: Vec<f64>,
-    /// Each with its wheels among all.
+    /// Each vehicle with the range of its wheels among all wheels.
     pub(super) vehicles: Vec<(RunningVehicle, Range<usize>)>,
-    /// Wheel forces beyond these are senseless, N; per wheel.
+    /// Limit of each wheel force, N; a larger force means that the motion is unstable.
     force_limits: Vec<f64>,
     steady: Vec<f64>,
     predicted: Vec<f64>,
@@ -75,8 +75,8 @@ pub struct Passage<'a> {
 impl<'a> Passage<'a> {
     /// Places the train at its start, on a track at `level`, in quasi-static motion.
     ///
-    /// Fails where a wheel stands off the track at the start or finish, where a speed is not above 0, where the finish does
-    /// not lie ahead, or where there is no static equilibrium.
+    /// Fails if a wheel stands off the track at the start or finish, if a speed is not above 0, if the finish does not
+    /// lie ahead, or if there is no static equilibrium.
     pub fn new(stepper: &'a Stepper, level: &'a TrackLevel, run: Run<'a>) -> Result<Self, TrackError> {
         let (track, sign) = (&stepper.track, run.train.direction.sign());
         let timetable = run.motion.timetable(run.start, run.finish, sign)?;
@@ -90,7 +90,7 @@ impl<'a> Passage<'a> {
         Ok(passage)
     }
 
-    /// Lets go of a track without vehicles that was held in `state`, for `steps` steps.
+    /// Releases a track without vehicles that was held in `state`, for `steps` steps.
     pub fn released(
         stepper: &'a Stepper,
         level: &'a TrackLevel,
@@ -110,7 +110,7 @@ impl<'a> Passage<'a> {
         let mut mass = track.mass.clone();
         track.held.iter().for_each(|(unknown, _)| mass.pin(*unknown));
         let mut passage = Self::begin(stepper, level, None, start)?;
-        // Accelerations that the forces at the first instant ask for, where every unknown has mass.
+        // Accelerations by the forces at the first instant, if every unknown has mass.
         if let Ok(mass) = mass.factor() {
             let forces = &mut passage.acceleration;
             forces.copy_from_slice(&passage.steady);
@@ -210,12 +210,12 @@ impl<'a> Passage<'a> {
         self.counters
     }
 
-    /// Steps from the start to the finish, were all as long as the first.
+    /// Steps from the start to the finish if all steps were as long as the first.
     pub fn planned_steps(&self) -> usize {
         (self.planned_ticks / self.ticks_per_longest) as usize
     }
 
-    /// Counts time in ticks that are the step `halvings` times halved.
+    /// Counts time in ticks: the step, halved `halvings` times.
     pub(super) fn divide_ticks(&mut self, halvings: u32) {
         self.ticks_per_step <<= halvings;
         self.ticks_per_longest = self.ticks_per_step;
@@ -273,7 +273,7 @@ impl<'a> Passage<'a> {
         self.stepper.factor.solve_in_place(a);
     }
 
-    /// The wheels at the end of the step, and how far they would indent the free rail without wheel forces.
+    /// The wheels at the end of the step, and their indentations of the free rail without wheel forces.
     fn move_wheels(&mut self) {
         let (track, scheme) = (&*self.stepper.track, &self.stepper.scheme);
         let time = self.time();
@@ -329,7 +329,7 @@ impl<'a> Passage<'a> {
         Ok(())
     }
 
-    /// Adds what the contact forces displace: the end of the step.
+    /// Adds the displacements by the contact forces: the end of the step.
     fn add_contacts(&mut self) {
         let scheme = &self.stepper.scheme;
         let (share, velocity_share) = (scheme.displacement_share(), scheme.velocity_share());
@@ -360,7 +360,7 @@ impl<'a> Passage<'a> {
         }
     }
 
-    /// Fails where a wheel force or a displacement is beyond sense.
+    /// Fails if a wheel force or a displacement is beyond its limit.
     fn check_sense(&self) -> Result<(), TrackError> {
         let mut forces = self.interface.forces.iter().zip(&self.force_limits);
         if let Some(j) = forces.position(|(force, limit)| !within(*force, *limit)) {
@@ -374,7 +374,7 @@ impl<'a> Passage<'a> {
         }
     }
 
-    /// Names the first displacement beyond sense.
+    /// Names the first displacement beyond its limit.
     fn wild_displacement(&self, time: f64) -> TrackError {
         let track = &self.stepper.track;
         let unknown = self.displacement.iter().position(|u| !within(*u, WILD_DISPLACEMENT)).unwrap_or(0);
@@ -386,7 +386,7 @@ impl<'a> Passage<'a> {
         }
     }
 
-    /// Kinetic and potential energy of the track, J, from the track as built without weight.
+    /// Kinetic and potential energy of the track, J, relative to the track as built without weight.
     pub fn energy(&self) -> f64 {
         let track = &self.stepper.track;
         let u = &self.displacement;

@@ -1,11 +1,12 @@
-//! How a passage begins: the track and its train in the motion they would have had if the train had always been there.
+//! The start of a passage: the track and its train move as if the train had always been there.
 //!
-//! Velocity and acceleration of the track are the first two differences of the static states a little behind, at and ahead of
-//! the start. The state at the start is then solved once more with the forces of inertia and damping of that motion, so that
-//! the equation of motion holds at the first instant.
+//! Velocity and acceleration of the track are the first and second differences of the static states slightly behind, at
+//! and ahead of the start. The state at the start is then solved once more with the inertia and damping forces of that
+//! motion, so that the equation of motion holds at the first instant.
 //!
-//! A vehicle cannot follow the ripple of the static states from sleeper to sleeper: followed at speed, a micrometre of it is
-//! a tenth of a car body's weight. It takes the mean slope over one bay and no acceleration.
+//! A vehicle takes the mean slope over one bay and no acceleration. It cannot follow the ripple of the static states
+//! from sleeper to sleeper: at speed, a ripple of one micrometre would need a force of a tenth of the weight of the car
+//! body.
 
 use super::mesh::Track;
 use super::statics::{Inertia, solve_with_inertia};
@@ -19,11 +20,12 @@ pub(super) struct Start {
     pub vehicle_velocity: Vec<Vec<f64>>,
 }
 
-/// Distance of the states that are compared, m: small beside an element, large beside the rounding of a deflection.
+/// Distance between the compared states, m: small compared with an element, large compared with the rounding of a
+/// deflection.
 const DISTANCE: f64 = 2e-3;
-/// The same as a part of the usual bay where rails shear. Their deflection has a kink under a wheel and over a seat, so that
-/// close states of a wheel over a seat would make an acceleration without bound; a distance like this gives the mean over
-/// the time in which the wheel passes.
+/// The same distance as a share of the usual bay, for rails with shear. Their deflection has a kink under a wheel and
+/// over a seat, so that states close together, with a wheel over a seat, would give an unbounded acceleration. This
+/// distance gives the mean over the time in which the wheel passes.
 const SHEARED_DISTANCE: f64 = 0.25;
 
 /// The train with its leading wheel at `leading` (m), moving at `speed` (m/s).
@@ -39,7 +41,7 @@ pub(super) fn start(
     let sign = train.direction.sign();
     let distance = if track.model.shears() { SHEARED_DISTANCE * track.model.usual_bay() } else { DISTANCE };
     let interval = distance / speed;
-    // A wheel may stand at the very end of the track: then there is no state behind or ahead of it.
+    // A wheel may stand at the very end of the track: then there is no state behind it or ahead of it.
     let (behind, ahead) = (at(leading - sign * distance), at(leading + sign * distance));
     let (Ok(behind), Ok(ahead)) = (behind, ahead) else { return Ok(Start::at_rest(track, here)) };
 

@@ -1,8 +1,8 @@
-//! How far the forces of the wheels reach within one time step: to each other, through rail and vehicle, and to the sleepers.
+//! The effect of the wheel forces within one time step: on each other, through rail and vehicle, and on the sleepers.
 //!
-//! Wheels are ranked from left to right. What a wheel's force displaces dies out within a metre or so, so a row of the
-//! compliance goes back to the first wheel that is near or of the same vehicle, and its size grows with the train and not with
-//! the square of it.
+//! Wheels are ranked from left to right. The displacement by a wheel force decays within about a metre. So a row of the
+//! compliance goes back to the first wheel that is near or on the same vehicle; the size of the matrix grows with the
+//! length of the train, not with its square.
 
 use super::influence::Stepper;
 use super::mesh::RailPoint;
@@ -20,7 +20,7 @@ pub(super) struct Reach {
     vehicles: Vec<DMatrix<f64>>,
 }
 
-/// A wheel and what its force displaces.
+/// A wheel and the displacements by its force.
 #[derive(Debug, Clone)]
 pub(super) struct RankedWheel {
     /// Its index in the order of the train.

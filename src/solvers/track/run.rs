@@ -11,7 +11,7 @@ impl Passage<'_> {
         StepView { passage: self }
     }
 
-    /// Runs to the finish; `observer` sees the start and every step.
+    /// Runs to the finish; `observer` gets the start and every step.
     pub fn run(&mut self, observer: &mut impl Observer) -> Result<Counters, TrackError> {
         observer.observe(&self.view());
         while self.tick < self.planned_ticks {
@@ -21,9 +21,9 @@ impl Passage<'_> {
         Ok(self.counters)
     }
 
-    /// One time step; after an error the state is not to be used.
+    /// One time step; after an error the state must not be used.
     ///
-    /// Fails where the contacts do not settle, or where the motion has grown beyond sense.
+    /// Fails if the contacts do not converge, or if a value is beyond its limit.
     pub fn step(&mut self) -> Result<(), TrackError> {
         match self.choice.take() {
             Some(mut choice) => {

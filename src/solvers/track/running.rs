@@ -1,4 +1,4 @@
-//! A vehicle in motion: one time step of it, given the forces at its wheels.
+//! A vehicle in motion: one time step of the vehicle, for given forces at its wheels.
 
 use super::error::{TrackError, TrackParameter};
 use super::multibody::Multibody;
@@ -27,7 +27,7 @@ pub(super) struct RunningVehicle {
 }
 
 impl RunningVehicle {
-    /// A vehicle in a state of motion without acceleration; fails where a step could not move it: no mass and no spring.
+    /// A vehicle in motion without acceleration; fails if an unknown has no mass and no spring.
     pub fn new(
         vehicle: &Multibody,
         gravity: f64,
@@ -55,7 +55,7 @@ impl RunningVehicle {
         })
     }
 
-    /// Goes on in steps of another length.
+    /// Continues in steps of another length.
     pub fn change_step(&mut self, vehicle: &Multibody, scheme: &Scheme) -> Result<(), TrackError> {
         self.inverse.copy_from_slice(inverse(vehicle, scheme)?.as_slice());
         Ok(())
@@ -70,7 +70,7 @@ impl RunningVehicle {
         })
     }
 
-    /// Begins a step: the acceleration that it would end with if the wheel forces at its end were zero.
+    /// Begins a step: computes the acceleration at its end for zero wheel forces at the end.
     pub fn predict(&mut self, scheme: &Scheme, old_forces: &[f64]) {
         let n = self.order;
         let (dt, alpha_f) = (scheme.time_step, scheme.alpha_f);
@@ -106,7 +106,7 @@ impl RunningVehicle {
         a.copy_from_slice(rest);
     }
 
-    /// Displacement of a wheel at the end of the step if the wheel forces there were zero, m; 0 under a given force.
+    /// Displacement of a wheel at the end of the step for zero wheel forces there, m; 0 under a given force.
     #[inline]
     pub fn free_wheel(&self, scheme: &Scheme, wheel: usize) -> f64 {
         self.wheels[wheel].map_or(0.0, |i| self.predicted[i] + scheme.displacement_share() * self.acceleration[i])
@@ -130,7 +130,7 @@ impl RunningVehicle {
     }
 }
 
-/// Acceleration at the end of a step per force there; fails where a step could not move the vehicle: no mass and no spring.
+/// Acceleration at the end of a step per force there; fails if an unknown has no mass and no spring.
 fn inverse(vehicle: &Multibody, scheme: &Scheme) -> Result<DMatrix<f64>, TrackError> {
     let (of_mass, of_damping, of_stiffness) = scheme.effective();
     let mut matrix = of_damping * &vehicle.damping + of_stiffness * &vehicle.stiffness;
@@ -140,6 +140,6 @@ fn inverse(vehicle: &Multibody, scheme: &Scheme) -> Result<DMatrix<f64>, TrackEr
     matrix.cholesky().map(|factor| factor.inverse()).ok_or(TrackError::Parameter {
         name: TrackParameter::Vehicle("unknowns of a vehicle"),
         value: vehicle.order() as f64,
-        expected: "that have a mass or springs to all sides",
+        expected: "that each have a mass or a spring",
     })
 }

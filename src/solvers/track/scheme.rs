@@ -1,5 +1,5 @@
-//! Time integration by one family of methods, second order all: generalised-α with damping of high frequencies set by one
-//! number, HHT-α and Newmark as its special cases.
+//! Time integration by one family of second-order methods: generalised-α, whose damping of high frequencies is set by
+//! one number, with HHT-α and Newmark as special cases.
 //!
 //! ```text
 //! M a_{n+1-αm} + C v_{n+1-αf} + K u_{n+1-αf} = f_{n+1-αf},    x_{n+1-α} = (1-α) x_{n+1} + α x_n
@@ -12,7 +12,7 @@
 //! Newmark:        αm = 0,             αf = 0            the average acceleration, without damping of its own
 //! ```
 //!
-//! Forces that are not linear take the same mean of both ends of the step as the linear ones.
+//! Nonlinear forces take the same mean of both ends of the step as the linear forces.
 
 use super::error::{TrackError, TrackParameter};
 use serde::{Deserialize, Serialize};
@@ -23,9 +23,9 @@ use std::fmt;
 pub enum Integrator {
     /// Spectral radius at infinite frequency, 0 .. 1.
     GeneralisedAlpha { rho: f64 },
-    /// Hilber, Hughes and Taylor: alpha from 0 to 1/3; a greater one damps high frequencies more.
+    /// Hilber, Hughes and Taylor: alpha from 0 to 1/3; a larger alpha damps high frequencies more.
     Hht { alpha: f64 },
-    /// Average acceleration (beta 1/4, gamma 1/2): damps nothing.
+    /// Average acceleration (beta 1/4, gamma 1/2): no damping.
     Newmark,
 }
 
@@ -40,7 +40,7 @@ impl Integrator {
     }
 }
 
-/// The method as a scene spells it.
+/// The method as it is written in a scene.
 impl fmt::Display for Integrator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -63,8 +63,8 @@ pub struct Scheme {
 }
 
 impl Scheme {
-    /// Generalised-α in steps of `time_step` (s); `spectral_radius` (0 to 1) is what is left after one step of a motion much
-    /// faster than it: smaller damps more.
+    /// Generalised-α in steps of `time_step` (s). `spectral_radius` (0 to 1) is the share of a motion much faster than
+    /// the step that is left after one step: a smaller value damps more.
     pub fn generalised_alpha(time_step: f64, spectral_radius: f64) -> Result<Self, TrackError> {
         let rho = within("spectral radius", spectral_radius, 1.0, "from 0 to 1")?;
         Self::with_means(time_step, (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0))

@@ -1,15 +1,15 @@
-//! Which train of a mix runs when.
+//! The order of the trains of a mix.
 //!
-//! Trains of a mix that is interleaved are spread evenly: of `n` trains, train `j` (from 0) is due when `(j + 1/2) / n` of all
-//! traffic has passed, and trains run in the order in which they are due. That is the rule of Webster and Sainte-Laguë for
-//! dividing seats by votes: whenever one stops, every train has had its share, to within one train.
+//! Trains of an interleaved mix are spread evenly: of `n` trains, train `j` (from 0) is due when `(j + 1/2) / n` of all
+//! traffic has passed, and trains run in the order in which they are due. This is the rule of Webster and Sainte-Laguë
+//! for dividing seats by votes: at any time every kind of train has had its share, to within one train.
 
 use serde::{Deserialize, Serialize};
 
 /// In which order the trains of a mix run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Order {
-    /// All along the run, each in its share.
+    /// Mixed along the whole run, each kind in its share.
     Interleaved,
     /// All trains of the first kind, then all of the second.
     InTurn,
@@ -61,11 +61,12 @@ impl Sequence {
         }
     }
 
-    /// Trains that run before train `train` of a kind: those due earlier, and of those due at once the kinds named earlier.
+    /// Trains that run before train `train` of a kind: the trains due earlier, and among trains due at the same time
+    /// the kinds named earlier.
     fn place(&self, kind: usize, train: u64) -> u64 {
         let (of, due) = (u128::from(self.shares[kind].trains), 2 * u128::from(train) + 1);
         let earlier = |(other, share): (usize, &Share)| {
-            // those with (2 j + 1) of <= due trains, or < where the other is named later
+            // those with (2 j + 1) of <= due trains, or < if the other is named later
             let trains = u128::from(share.trains);
             let ticks = due * trains;
             let ticks = if other <= kind { ticks } else { ticks - 1 };
@@ -85,14 +86,14 @@ impl Sequence {
         self.counts(position).iter().zip(&self.shares).map(|(count, share)| *count as f64 * share.mass).sum()
     }
 
-    /// The most trains that have no more than so many axles.
+    /// The largest number of trains that have at most `axles` axles together.
     pub fn within(&self, axles: u64) -> u64 {
         let trains = self.trains();
         let usual = part(axles, trains, self.axles(trains)).min(trains);
         partition(trains + 1, usual + 1, |position| self.axles(position) <= axles).saturating_sub(1)
     }
 
-    /// The number of trains after which `carried`, which grows with it, is nearest to `amount`.
+    /// The number of trains for which `carried`, which grows with this number, is nearest to `amount`.
     pub fn nearest(&self, amount: f64, carried: impl Fn(&Sequence, u64) -> f64) -> u64 {
         let (trains, all) = (self.trains(), carried(self, self.trains()));
         let usual = (amount / all * trains as f64).clamp(0.0, trains as f64) as u64;
@@ -101,7 +102,7 @@ impl Sequence {
         if amount - carried(self, below) < carried(self, above) - amount { below } else { above }
     }
 
-    /// Numbers of trains at which another kind begins, where they run in turn.
+    /// Numbers of trains at which another kind begins, if they run in turn.
     pub fn turns(&self) -> Vec<u64> {
         if self.order == Order::Interleaved {
             return Vec::new();
@@ -119,8 +120,8 @@ fn part(some: u64, of: u64, all: u64) -> u64 {
     (u128::from(of) * u128::from(some) / u128::from(all.max(1))).min(u128::from(u64::MAX)) as u64
 }
 
-/// How many of the numbers from 0 below `count` hold `below`, which holds up to some number and from there on does not. The
-/// nearer the guess, the sooner it is found.
+/// The number from 0 to `count` at which `below` changes from true to false. The nearer the guess, the faster the
+/// search.
 fn partition(count: u64, guess: u64, below: impl Fn(u64) -> bool) -> u64 {
     let (mut low, mut high) = (guess.min(count), guess.min(count));
     let mut reach = 1;
@@ -186,7 +187,7 @@ mod tests {
                 prop_assert!((*count as f64 - due).abs() <= 1.0, "{} of {}", count, due);
             }
             if stop > 0 {
-                // one train a step, and never one that runs back
+                // one train a step, and never backwards
                 let before = mix.counts(stop - 1);
                 prop_assert!(counts.iter().zip(&before).all(|(now, then)| now >= then));
             }

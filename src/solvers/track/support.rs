@@ -1,34 +1,34 @@
-//! The law of a sleeper's support, which pushes and never pulls.
+//! The law of the support of a sleeper; the support pushes and never pulls.
 //!
-//! At gap coordinate g (sleeper below support level: g > 0) the spring carries `E(g) = k g`, or with a seating of stiffness
-//! `k_s <= k` and closure a, `E(g) = k_s g` up to a and `k_s a + k (g - a)` beyond: ballast that first has to come together. One
-//! damper acts along both: `R = max(0, E(g) + c g')` while g > 0, nothing while g < 0.
+//! At gap coordinate g (sleeper below support level: g > 0) the spring carries `E(g) = k g`. With a seating of
+//! stiffness `k_s <= k` and closure a, `E(g) = k_s g` up to a and `k_s a + k (g - a)` beyond, for example for loose
+//! ballast. One damper acts along both: `R = max(0, E(g) + c g')` for g > 0, 0 for g < 0.
 //!
-//! Within one time step `g' = r g + d`, with r > 0 given by the integrator and d the speed at which the sleeper would pass
-//! g = 0. For d > 0 the force jumps from 0 to c d at g = 0. Filled in there, the graph of R over g is maximal monotone in every
-//! case, as E has slopes above zero:
+//! Within one time step `g' = r g + d`; the integrator gives r > 0, and d is the speed at which the sleeper would pass
+//! g = 0. For d > 0 the force jumps from 0 to c d at g = 0. With this jump filled in, the graph of R over g is maximal
+//! monotone in all cases, because E has slopes above zero:
 //!
 //! ```text
 //! d > 0:   R = 0 (g <= 0),   0 <= R <= c d (g = 0),   R = E(g) + c r g + c d (g >= 0)
 //! d <= 0:  R = max(0, E(g) + c r g + c d)
 //! ```
 //!
-//! The rest of the step answers forces by a positive definite compliance, and so do the wheels with monotone laws: the sum of
-//! both is strongly monotone, and a time step has exactly one solution.
+//! The rest of the step responds to forces by a positive definite compliance, and so do wheels with monotone laws. The
+//! sum of both is strongly monotone, so a time step has exactly one solution.
 
 use serde::{Deserialize, Serialize};
 
-/// Which branch of its graph a support is on.
+/// The branch of its graph on which a support is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SupportPhase {
-    /// It carries by its full stiffness.
+    /// It carries with its full stiffness.
     #[default]
     Closed,
-    /// It carries by its seating.
+    /// It carries with the stiffness of its seating.
     Seating,
-    /// The sleeper arrives: its gap is zero and the support carries part of the damper force.
+    /// The sleeper is touching down: its gap is zero and the support carries part of the damper force.
     Touching,
-    /// It carries nothing.
+    /// It carries no force.
     Open,
 }
 
@@ -43,14 +43,14 @@ impl SupportPhase {
     }
 }
 
-/// What a sleeper feels under it: plain numbers of one seat.
+/// The spring and damper under a sleeper, for one seat.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Spring {
     /// N/m.
     pub stiffness: f64,
     /// N s/m.
     pub damping: f64,
-    /// Stiffness, N/m, of the first compression, and how far that reaches, m.
+    /// Stiffness of the first compression, N/m, and its range, m.
     pub seating: Option<(f64, f64)>,
 }
 
@@ -65,16 +65,16 @@ impl Spring {
     }
 }
 
-/// A support whose stiffness grows once: before `closure` it is less.
+/// A support whose stiffness is lower before `closure`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seating {
-    /// N/m, above 0 and at most that of the support.
+    /// N/m, above 0 and at most the stiffness of the support.
     pub stiffness: f64,
-    /// Displacement over which the seating acts alone, m, above 0.
+    /// Displacement over which the seating alone acts, m, above 0.
     pub closure: f64,
 }
 
-/// A sleeper of the mesh, and the support that it stands on.
+/// A sleeper of the mesh, and its support.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SleeperSupport {
     pub seat: usize,
@@ -84,11 +84,11 @@ pub(super) struct SleeperSupport {
     pub seating: Option<Seating>,
 }
 
-/// Gaps below this are none, m.
+/// Gaps below this count as zero, m.
 const GAP_TOLERANCE: f64 = 1e-14;
 
 impl SleeperSupport {
-    /// What the seating lacks of the full stiffness, N/m, and its closure, m; both 0 where there is none.
+    /// Full stiffness minus stiffness of the seating, N/m, and its closure, m; both 0 without a seating.
     #[inline]
     fn seating(&self) -> (f64, f64) {
         match self.seating {
@@ -99,14 +99,14 @@ impl SleeperSupport {
         }
     }
 
-    /// What a closed support carries less than one without seating, N.
+    /// Force of a closed support without seating minus force of this closed support, N.
     #[inline]
     pub fn seating_loss(&self) -> f64 {
         let (lack, closure) = self.seating();
         lack * closure
     }
 
-    /// What a support in a phase lacks of the full stiffness, N/m.
+    /// Full stiffness minus the stiffness of a support in a phase, N/m.
     pub fn lacking_stiffness(&self, phase: SupportPhase) -> f64 {
         match phase {
             SupportPhase::Closed => 0.0,
@@ -115,7 +115,7 @@ impl SleeperSupport {
         }
     }
 
-    /// Force of a resting support at gap coordinate 0 if its phase went on to there, N.
+    /// Force of a resting support extrapolated in its phase to gap coordinate 0, N.
     pub fn offset_at_rest(&self, phase: SupportPhase) -> f64 {
         if phase == SupportPhase::Closed { -self.seating_loss() } else { 0.0 }
     }
@@ -135,7 +135,7 @@ impl SleeperSupport {
         (self.support_stiffness * gap - lack * gap.min(closure) + self.support_damping * rate).max(0.0)
     }
 
-    /// The phase at rest at a gap coordinate (m); the phase `now` unless that contradicts it.
+    /// The phase at rest at a gap coordinate (m): the phase `now`, unless the gap contradicts it.
     pub fn phase_at_rest(&self, now: SupportPhase, gap: f64) -> SupportPhase {
         let (lack, closure) = self.seating();
         let agrees = match now {
@@ -191,7 +191,7 @@ impl SupportLines {
         (self.stiffness - self.lack) * gap + self.offset
     }
 
-    /// The force in a phase at a gap coordinate (m) where it falls short of the closed line by `correction`, N.
+    /// The force in a phase at a gap coordinate (m); while touching, it is `correction` (N) below the closed line.
     #[inline]
     pub fn force(&self, phase: SupportPhase, gap: f64, correction: f64) -> f64 {
         match phase {
@@ -202,13 +202,13 @@ impl SupportLines {
         }
     }
 
-    /// The phase that carries at a gap coordinate (m).
+    /// The phase of a carrying support at a gap coordinate (m).
     #[inline]
     fn carrying(&self, gap: f64) -> SupportPhase {
         if self.lack > 0.0 && gap < self.closure { SupportPhase::Seating } else { SupportPhase::Closed }
     }
 
-    /// The phase that follows from a trial: the gap coordinate, m, and the force that the phase `now` gave, N.
+    /// The phase after a trial, from the gap coordinate, m, and the force in the phase `now`, N.
     #[inline]
     pub fn phase_after(&self, now: SupportPhase, gap: f64, force: f64) -> SupportPhase {
         let force_tolerance = self.stiffness * GAP_TOLERANCE;
@@ -251,7 +251,7 @@ mod tests {
     }
 
     proptest! {
-        /// One support on a spring, whatever its phase before: the phases settle on the one solution, found by bisection.
+        /// One support on a spring, from any phase: the phases converge to the one solution, found by bisection.
         #[test]
         fn phases_settle(
             free in -2e-3..4e-3f64,

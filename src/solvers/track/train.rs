@@ -4,7 +4,7 @@ use super::error::{TrackError, TrackParameter};
 use super::multibody::Multibody;
 use serde::{Deserialize, Serialize};
 
-/// Which way a train runs.
+/// The direction of a train.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Direction {
     /// Towards larger x.
@@ -15,7 +15,7 @@ pub enum Direction {
 /// Vehicles that run together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Train {
-    /// Leading one first, each with the distance of its first wheel behind the train's first wheel, m.
+    /// Leading vehicle first, each with the distance of its first wheel behind the first wheel of the train, m.
     pub vehicles: Vec<(Multibody, f64)>,
     pub direction: Direction,
 }

@@ -1,5 +1,5 @@
-//! The data sheet of a vehicle on two bogies: ten rigid-body unknowns over one rail, which are car body and two bogies with
-//! bounce and pitch, and four wheels.
+//! The data sheet of a vehicle on two bogies: ten rigid-body unknowns over one rail: bounce and pitch of the car body
+//! and of the two bogies, and four wheels.
 
 use super::{Multibody, Wheel, WheelContact};
 use nalgebra::DMatrix;
@@ -32,7 +32,7 @@ pub struct Vehicle {
     pub hertz: f64,
 }
 
-/// Unknowns: car body bounce and pitch, the same of the leading and of the trailing bogie, four wheels.
+/// Unknowns: car body bounce and pitch, bounce and pitch of the leading and of the trailing bogie, four wheels.
 const UNKNOWNS: usize = 10;
 /// The first wheel's unknown.
 const WHEEL: usize = 6;
@@ -45,7 +45,7 @@ impl Vehicle {
         self.car_body_mass + 2.0 * self.bogie_mass + 4.0 * self.wheel_mass
     }
 
-    /// Distances of the four wheels behind the leading one, m.
+    /// Distances of the four wheels behind the leading wheel, m.
     pub fn wheel_offsets(&self) -> [f64; 4] {
         let (bogies, wheels) = (self.bogie_spacing, self.wheelset_spacing);
         [0.0, wheels, bogies, bogies + wheels]
@@ -55,7 +55,7 @@ impl Vehicle {
     fn suspension(&self) -> (DMatrix<f64>, DMatrix<f64>) {
         let zeros = DMatrix::zeros(UNKNOWNS, UNKNOWNS);
         let (mut stiffness, mut damping) = (zeros.clone(), zeros);
-        // A spring and a damper that a combination of unknowns extends.
+        // A spring and a damper that are extended by a combination of unknowns.
         let mut connect = |k: f64, c: f64, extension: &[(usize, f64)]| {
             for (i, a) in extension {
                 for (j, b) in extension {

@@ -1,11 +1,12 @@
-//! What an observer may ask a passage at each step; every answer is a few operations on the present state.
+//! The quantities of a passage that an observer may read at each step; every quantity takes a few operations on the
+//! present state.
 
 use super::counters::Counters;
 use super::mesh::{FootUnknown, Track};
 use super::passage::Passage;
 use super::statics::StaticState;
 
-/// Sees the start of a passage and the end of each of its steps.
+/// Observes the start of a passage and the end of each of its steps.
 pub trait Observer {
     fn observe(&mut self, view: &StepView<'_>);
 }
@@ -53,7 +54,7 @@ impl<'a> StepView<'a> {
         self.passage.counters.steps
     }
 
-    /// Whether the time is a whole number of `every` times the passage's longest step: a grid that all steps keep to.
+    /// Whether the time is a multiple of `every` times the longest step of the passage: a grid that all steps reach.
     pub fn is_on_grid(&self, every: usize) -> bool {
         self.passage.tick.is_multiple_of(every as u64 * self.passage.ticks_per_longest)
     }
@@ -63,7 +64,7 @@ impl<'a> StepView<'a> {
         self.passage.time()
     }
 
-    /// Length of the step that has led here, s.
+    /// Length of the last step, s.
     pub fn time_step(&self) -> f64 {
         self.passage.last_step
     }
@@ -98,8 +99,8 @@ impl<'a> StepView<'a> {
         }
     }
 
-    /// How far the sleeper presses its support below the support's unloaded level, m, 0 where it hangs; none for a seat without
-    /// a sleeper.
+    /// Displacement of the support under the sleeper below its unloaded level, m, 0 if the sleeper hangs; none for a
+    /// seat without a sleeper.
     pub fn support_deflection(&self, seat: usize) -> Option<f64> {
         match self.track().feet[seat] {
             FootUnknown::Sleeper(s) => {
@@ -110,7 +111,8 @@ impl<'a> StepView<'a> {
         }
     }
 
-    /// Displacement of the sleeper or slab under a seat, m, from the track as built; 0 for rigid seats, as for both others.
+    /// Displacement of the sleeper or slab under a seat, m, relative to the track as built; 0 for rigid seats. The same
+    /// holds for its velocity and acceleration.
     pub fn foot_displacement(&self, seat: usize) -> f64 {
         self.track().foot_unknown(seat).map_or(0.0, |unknown| self.passage.displacement[unknown])
     }
@@ -125,7 +127,7 @@ impl<'a> StepView<'a> {
         self.track().foot_unknown(seat).map_or(0.0, |unknown| self.passage.acceleration[unknown])
     }
 
-    /// Deflection of the rail at a node, m, from the track as built.
+    /// Deflection of the rail at a node, m, relative to the track as built.
     pub fn rail_deflection(&self, node: usize) -> f64 {
         self.passage.displacement[self.track().rail[node]]
     }

@@ -1,4 +1,4 @@
-//! Elements: linear fields, stability of single elements, order in their size.
+//! Elements: linear fields, stability of single elements, order of convergence in their size.
 
 use super::super::*;
 use super::scenes::*;
@@ -10,7 +10,8 @@ fn linear(place: [f64; 3]) -> [f64; 3] {
     GRADIENT.map(|row| (0..3).map(|k| row[k] * place[k]).sum())
 }
 
-/// Displacements of the outer nodes make the inner ones follow the same linear field, and the stress is the exact one everywhere.
+/// If the outer nodes have the displacements of a linear field, the inner nodes have them too, and the stress is exact
+/// everywhere.
 #[test]
 fn a_linear_field_is_exact_in_distorted_elements() {
     for formulation in FORMULATIONS {
@@ -53,7 +54,7 @@ fn moving_and_turning_as_a_whole_costs_no_force() {
     }
 }
 
-/// Cubes: `h / sqrt(3 K / rho)` for the mean strain (methods 2.2), where the volume pulses.
+/// Cubes: `h / sqrt(3 K / rho)` for the mean strain (methods 2.2), for a volumetric vibration.
 #[test]
 fn the_limit_of_a_cube() {
     let (lambda, mu) = SUBGRADE.lame();
@@ -68,7 +69,7 @@ fn the_limit_of_a_cube() {
     assert!((cube.limit_with(&springs) / theory - 0.5).abs() < 1e-12);
 }
 
-/// Below the limit nothing grows; two per cent above it the fastest vibration does.
+/// Below the limit no motion grows; two per cent above it the fastest vibration grows.
 #[test]
 fn motion_is_stable_up_to_the_limit() {
     for formulation in FORMULATIONS {
@@ -93,8 +94,8 @@ fn motion_is_stable_up_to_the_limit() {
     }
 }
 
-/// A box on rollers all round under the body forces that make `u_x = A sin(kx) cos(qz)`, `u_z = A cos(kx) sin(qz)`: the error
-/// falls with the square of the size of the elements.
+/// A box on rollers on all sides under the body forces that cause `u_x = A sin(kx) cos(qz)`, `u_z = A cos(kx) sin(qz)`:
+/// the error falls with the square of the size of the elements.
 #[test]
 fn the_error_is_of_second_order_in_the_size() {
     let (lambda, mu) = SUBGRADE.lame();

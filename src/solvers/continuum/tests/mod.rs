@@ -1,4 +1,4 @@
-//! The soil against closed forms.
+//! Tests of the soil against closed forms.
 
 mod elements;
 mod motion;

@@ -1,9 +1,9 @@
-//! Waves, energies, and the same bits whoever computes.
+//! Waves, energies, and equal bits for any number of threads.
 
 use super::super::*;
 use super::scenes::*;
 
-/// A pulse runs up a column of 10 m, is thrown back by the free top, and leaves through the quiet bottom.
+/// A pulse runs up a column of 10 m, is reflected by the free top, and leaves through the quiet bottom.
 #[test]
 fn a_wave_leaves_through_a_quiet_face() {
     for formulation in FORMULATIONS {
@@ -32,7 +32,7 @@ fn a_wave_leaves_through_a_quiet_face() {
                 returns = returns.max(v);
             }
         }
-        // v = σ / ρ c, and the crest comes 5 m later than the push
+        // v = σ / ρ c, and the peak comes 5 m later than the push
         let exact = 1e3 / (SUBGRADE.density * speed);
         assert!((passes / exact - 1.0).abs() < 0.01, "{formulation:?} {passes} {exact}");
         let found = 5.0 / (arrives.1 - 0.5 * period);
@@ -41,7 +41,8 @@ fn a_wave_leaves_through_a_quiet_face() {
     }
 }
 
-/// A block that is struck, with damping, a quiet side and a driven node: what is unaccounted falls with the square of the step.
+/// A block after an impact, with damping, a quiet side and a driven node: the residual falls with the square of the
+/// step.
 #[test]
 fn the_energy_balance_closes_with_order_two() {
     for (formulation, stiffness) in FORMULATIONS.into_iter().flat_map(|f| [(f, 0.0), (f, 2e-5)]) {
@@ -65,12 +66,12 @@ fn the_energy_balance_closes_with_order_two() {
         };
         let ([one, two], energy) = ([left(1).0, left(2).0], left(4).1);
         assert!(one < 2e-3, "{formulation:?} {one:e} {energy:?}");
-        // damping that lags by half a step is of first order, and so is what it is said to lose
+        // damping that lags by half a step is of first order, and so is its reported loss
         assert!((one / two).log2() > 1.8, "{formulation:?} {stiffness} {one:e} {two:e} {energy:?}");
     }
 }
 
-/// A block of 1440 weak elements, more than a chunk.
+/// A block of 1440 weak elements: more than one chunk.
 fn struck(formulation: Formulation) -> Soil {
     let strength = Strength { cohesion: 5e3, friction_angle: 0.5, dilation_angle: 0.1, tension: 1e3 };
     let weak = Material { strength: Some(strength), ..SUBGRADE };

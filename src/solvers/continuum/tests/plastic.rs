@@ -1,4 +1,4 @@
-//! Soil that yields: paths of one element, and Prandtl's footing.
+//! Soil that yields: stress paths of one element, and Prandtl's footing.
 
 use super::super::yields::{Yield, principal};
 use super::super::*;
@@ -8,7 +8,8 @@ const STRENGTH: Strength =
     Strength { cohesion: 10e3, friction_angle: 0.5235987755982988, dilation_angle: 0.17453292519943295, tension: 5e3 };
 const CONFINED: f64 = 100e3;
 
-/// A cube under a confining pressure whose top is driven; axial stress, axial and volumetric strain as it flows, and later.
+/// A cube under a confining pressure with a driven top; axial stress, axial and volumetric strain when it begins to
+/// flow, and later.
 fn triaxial(formulation: Formulation, pressure: f64, speed: f64) -> [[f64; 3]; 2] {
     let material = Material { density: 2000.0, youngs_modulus: 50e6, poisson_ratio: 0.3, strength: Some(STRENGTH) };
     let settings = Settings { formulation, damping: Damping { local: 0.8, stiffness: 0.0 }, ..Settings::default() };
@@ -34,8 +35,8 @@ fn triaxial(formulation: Formulation, pressure: f64, speed: f64) -> [[f64; 3]; 2
     })
 }
 
-/// `σ3 = -(p N + 2 c √N)` with N = (1 + sin φ) / (1 - sin φ) in compression, `σ1 = -(p - 2 c √N) / N` in extension; the volume grows by
-/// `2 sin ψ / (1 - sin ψ)` of the shortening, and by `2 sin ψ / (1 + sin ψ)` of the lengthening.
+/// `σ3 = -(p N + 2 c √N)` with N = (1 + sin φ) / (1 - sin φ) in compression, `σ1 = -(p - 2 c √N) / N` in extension; the
+/// volume grows by `2 sin ψ / (1 - sin ψ)` of the shortening, and by `2 sin ψ / (1 + sin ψ)` of the lengthening.
 #[test]
 fn triaxial_paths_of_one_element() {
     let n = 3.0;
@@ -58,7 +59,7 @@ fn triaxial_paths_of_one_element() {
     }
 }
 
-/// Whatever the trial: the stress is allowed, the flow has a sign, and a stress that is allowed stays.
+/// For any trial: the stress is allowed, the flow has the right sign, and an allowed stress does not change.
 #[test]
 fn the_return_ends_on_the_strength() {
     let mut numbers = Numbers(5);
@@ -83,7 +84,7 @@ fn the_return_ends_on_the_strength() {
             let (s, _) = principal(&stress);
             assert!(s[0] - s[2] + (s[0] + s[2]) * friction.sin() <= reach + 1e-6, "{trial:?} {stress:?}");
             assert!(s[0] <= limit + 1e-6, "{trial:?} {stress:?}");
-            // energy is lost, never gained
+            // energy is lost and never gained
             let flow: Vec<f64> = yields.strain(&trial).iter().zip(yields.strain(&stress)).map(|(a, b)| a - b).collect();
             let lost: f64 = (0..6).map(|i| stress[i] * flow[i] * if i < 3 { 1.0 } else { 2.0 }).sum();
             assert!(lost > -1e-9, "{trial:?} {stress:?} {lost}");
@@ -93,8 +94,8 @@ fn the_return_ends_on_the_strength() {
     }
 }
 
-/// Half of a strip footing on clay, pushed down by 30 mm until it flows: its pressure over the cohesion. Nodes under the footing are
-/// driven; its edge lies in the middle of the next element.
+/// Half of a strip footing on clay, driven down by 30 mm until the soil flows: its pressure divided by the cohesion.
+/// Nodes under the footing are driven; its edge lies in the middle of the next element.
 fn footing(formulation: Formulation, half: usize, steps: u64) -> f64 {
     let clay = Strength { cohesion: 10e3, friction_angle: 0.0, dilation_angle: 0.0, tension: f64::INFINITY };
     let material = Material { density: 2000.0, youngs_modulus: 20e6, poisson_ratio: 0.3, strength: Some(clay) };
@@ -126,7 +127,7 @@ fn a_strip_footing_fails_as_prandtl_says() {
     }
 }
 
-/// Meshes twice as fine: 5.130 and 5.141.
+/// With meshes twice as fine: 5.130 and 5.141.
 #[test]
 fn a_finer_footing_comes_nearer() {
     for (formulation, half) in [(Formulation::MeanStrain, 12), (Formulation::MixedDiscretisation, 8)] {

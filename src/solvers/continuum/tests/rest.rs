@@ -22,13 +22,13 @@ fn a_column_settles_under_its_weight() {
             assert!((u[2] - exact).abs() < 1e-11 * 1e-4, "{} {exact}", u[2]);
             assert!(u[0].abs() < 1e-15 && u[1].abs() < 1e-15);
         }
-        // at rest: a step moves nothing
+        // at rest: a step does not move anything
         soil.step(soil.limit()).unwrap();
         assert!(soil.velocities().iter().flatten().all(|v| v.abs() < 1e-12));
     }
 }
 
-/// The same by motion with local damping.
+/// The same result by motion with local damping.
 #[test]
 fn damped_motion_ends_at_rest() {
     for formulation in FORMULATIONS {
@@ -51,14 +51,14 @@ fn damped_motion_ends_at_rest() {
 fn soil_that_nothing_holds_has_no_rest() {
     let mut free = soil(block([1.0; 3], [2; 3], SUBGRADE), Formulation::MeanStrain, 9.81);
     assert_eq!(free.rest(&[]), Err(SoilError::NotHeld));
-    // springs under all nodes hold it
+    // springs under all nodes hold the soil
     let springs: Vec<_> = (0..27).map(|node| (node, [1e6; 3])).collect();
     free.rest(&springs).unwrap();
     let sum: f64 = free.displacements().iter().map(|u| -1e6 * u[2]).sum();
     assert!((sum / (2100.0 * 9.81) - 1.0).abs() < 1e-9);
 }
 
-/// A quiet bottom goes on bearing the weight when motion begins.
+/// A quiet bottom still carries the weight when motion begins.
 #[test]
 fn a_quiet_face_bears_what_it_bore_at_rest() {
     let mut soil = soil(block([0.2, 0.2, 1.0], [2, 2, 10], SUBGRADE), Formulation::MeanStrain, 9.81);
@@ -69,7 +69,7 @@ fn a_quiet_face_bears_what_it_bore_at_rest() {
     assert!(soil.velocities().iter().flatten().all(|v| v.abs() < 1e-10));
 }
 
-/// The soil under a plate of springs gives what the condensed stiffness gives.
+/// The soil under a plate of springs gives the same result as the condensed stiffness.
 #[test]
 fn a_condensed_soil_answers_as_the_whole() {
     for formulation in FORMULATIONS {
@@ -91,7 +91,8 @@ fn a_condensed_soil_answers_as_the_whole() {
     }
 }
 
-/// A load that a footing bears comes to rest, one beyond its capacity is refused and leaves the soil as it was.
+/// A load below the bearing capacity of a footing comes to rest; a load above it is refused and leaves the soil
+/// unchanged.
 #[test]
 fn a_load_beyond_the_bearing_capacity_is_refused() {
     let clay = Strength { cohesion: 10e3, friction_angle: 0.0, dilation_angle: 0.0, tension: f64::INFINITY };

@@ -1,4 +1,4 @@
-//! Soils that several tests share.
+//! Soils shared by several tests.
 
 use super::super::{Element, Formulation, Material, Mesh, Settings, Side, Soil, Support};
 
@@ -28,7 +28,7 @@ pub fn support(soil: &mut Soil, sides: &[Side], support: Support) {
 
 pub const WALLS: [Side; 4] = [Side::XMin, Side::XMax, Side::YMin, Side::YMax];
 
-/// Numbers from -1 to 1 that are the same every time.
+/// Numbers from -1 to 1 that are the same in every run.
 pub struct Numbers(pub u64);
 
 impl Numbers {
@@ -38,7 +38,8 @@ impl Numbers {
     }
 }
 
-/// A box with its inner nodes moved by up to a share of the spacing, so that every element is another distorted hexahedron.
+/// A box with its inner nodes moved by up to a share of the spacing, so that all elements are differently distorted
+/// hexahedra.
 pub fn distorted(spaces: usize, share: f64) -> Mesh {
     let even = block([1.0; 3], [spaces; 3], SUBGRADE);
     let mut numbers = Numbers(7);

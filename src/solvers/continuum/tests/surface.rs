@@ -34,7 +34,7 @@ fn facets_are_found_by_their_place() {
     assert_eq!(surface.columns(0, 3.5, 4.0), (0, 0));
 }
 
-/// A force at a point between corners has the same force, moment and power as its shares there.
+/// A force at a point between corners has the same force, moment and power as its shares at the corners.
 #[test]
 fn shares_keep_force_moment_and_power() {
     let mesh = block([1.0; 3], [3; 3], SUBGRADE);

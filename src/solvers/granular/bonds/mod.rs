@@ -1,8 +1,9 @@
-//! Glue between grains: springs that push, pull and shear, until they break.
+//! Glue between grains: springs in tension, compression and shear, until they break.
 //!
-//! A bond stands beside the contact of its two pebbles and knows nothing of it. Its normal force goes with how far the overlap is from the
-//! one at which it was glued, its shear force by increments in the turning contact plane; it bears no moment. It breaks for good where it
-//! pulls or shears by more than its strengths, and bears nothing from that step on. These are PFC's linear parallel bonds of radius 0.
+//! A bond acts in parallel to the contact of its two pebbles and is independent of it. Its normal force depends on the
+//! overlap minus the overlap at which it was glued; its shear force grows by increments in the rotating contact plane;
+//! it carries no moment. A bond breaks for good if its tension or shear exceeds its strength, and carries no force from
+//! that step on. These are PFC's linear parallel bonds of radius 0.
 
 mod pass;
 #[cfg(test)]
@@ -23,21 +24,21 @@ use super::vector::{Vec3, add, norm, scale, sub};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-/// What bonds are made of.
+/// Properties of bonds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Glue {
-    /// Stiffness of a bond, beside that of the contact \[N/m\].
+    /// Stiffness of a bond, in addition to the stiffness of the contact \[N/m\].
     pub normal_stiffness: f64,
     /// \[N/m\]
     pub shear_stiffness: f64,
-    /// Force at which a bond breaks when pulled \[N\].
+    /// Tensile force at which a bond breaks \[N\].
     pub tensile_strength: f64,
-    /// Force at which it breaks when sheared \[N\].
+    /// Shear force at which a bond breaks \[N\].
     pub shear_strength: f64,
 }
 
 impl Glue {
-    /// Every number that cannot be, in the order of the fields.
+    /// Every number out of its range, in the order of the fields.
     pub fn faults(&self) -> Vec<LawError> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         let numbers = [
@@ -60,18 +61,18 @@ impl Glue {
     }
 }
 
-/// A body, and a pebble in it.
+/// Number of a body, and index of a pebble in it.
 type Name = (u32, u16);
 
-/// A bond that holds, by its pebbles, the lower name first.
+/// An intact bond, given by its pebbles, the lower name first.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct Bond<R> {
     pub glue: u16,
     pub low: Name,
     pub high: Name,
-    /// Overlap at which it bears nothing \[m\].
+    /// Overlap at which the bond carries no force \[m\].
     pub start: R,
-    /// Force of the shear spring on the lower \[N\].
+    /// Force of the shear spring on the lower pebble \[N\].
     pub shear: [R; 3],
 }
 
@@ -82,10 +83,10 @@ struct Block<R> {
     names: [[Name; 2]; BLOCK],
     first: [u32; BLOCK],
     second: [u32; BLOCK],
-    /// What the first is shifted by.
+    /// Shift of the first pebble.
     image: [Image; BLOCK],
     start: [R; BLOCK],
-    /// 1 of a bond that holds, 0 of one that is broken or fills up the block.
+    /// 1 for an intact bond, 0 for a broken bond or an unused place of the block.
     holds: [R; BLOCK],
     shear: BlockVector<R>,
 }
@@ -96,22 +97,22 @@ pub(super) struct Bonds<R> {
     pub glues: Vec<Glue>,
     /// Sorted by glue and names.
     blocks: Vec<Block<R>>,
-    /// Bonds broken so far that are no more in the blocks.
+    /// Bonds broken so far that are no longer in the blocks.
     pub dropped: u64,
 }
 
 impl<R: Real> Bonds<R> {
-    /// None yet of these glues, after so many that have broken.
+    /// No bonds with these glues yet, after `dropped` broken bonds.
     pub fn none(glues: Vec<Glue>, dropped: u64) -> Self {
         Bonds { glues, blocks: Vec::new(), dropped }
     }
 
-    /// Room for what bonds do to bodies: one outcome each, those that fill up blocks included.
+    /// Number of outcomes of bonds: one per place, including unused places of blocks.
     pub fn places(&self) -> usize {
         self.blocks.len() * BLOCK
     }
 
-    /// Those that hold.
+    /// The intact bonds.
     pub fn held(&self) -> Vec<Bond<R>> {
         let of_block = |block: &Block<R>| {
             let lanes = (0..BLOCK).filter(|lane| block.is_held(*lane)).map(|lane| Bond {
@@ -126,7 +127,7 @@ impl<R: Real> Bonds<R> {
         self.blocks.iter().flat_map(of_block).collect()
     }
 
-    /// Pebbles of the bond at a place; `None` where none holds there.
+    /// Pebbles of the bond at a place; `None` if no intact bond is there.
     pub fn pebbles(&self, place: usize) -> Option<[u32; 2]> {
         let (block, lane) = (&self.blocks[place / BLOCK], place % BLOCK);
         block.is_held(lane).then(|| [block.first[lane], block.second[lane]])
@@ -145,10 +146,10 @@ impl<R: Real> Block<R> {
 }
 
 impl<R: Real> Bed<R> {
-    /// Glues pairs of pebbles that touch now: `which` says with which of the `glues`, if any. They bear nothing as they are. Bonds of before
-    /// are taken off. Returns how many there are.
+    /// Glues pairs of pebbles that touch now: `which` returns the number of the glue in `glues`, if any. In the present
+    /// state the bonds carry no force. Earlier bonds are removed. Returns the number of bonds.
     ///
-    /// Bodies that were copied from a glued bed are not glued: this comes last.
+    /// Bodies that are copied from a glued bed are not glued: glue last.
     pub fn glue(&mut self, glues: Vec<Glue>, which: impl Fn(&ContactState) -> Option<u16>) -> Result<usize, Failure> {
         let contacts = self.snapshot()?.contacts;
         let bond = |contact: &ContactState| {
@@ -165,12 +166,12 @@ impl<R: Real> Bed<R> {
         Ok(count)
     }
 
-    /// Bonds that hold.
+    /// Number of intact bonds.
     pub fn bonds(&self) -> usize {
         (0..self.bonds.places()).filter(|place| self.bonds.pebbles(*place).is_some()).count()
     }
 
-    /// Bonds that have broken since they were glued.
+    /// Number of bonds that have broken since they were glued.
     pub fn broken_bonds(&self) -> u64 {
         let broken = |block: &Block<R>| {
             (0..BLOCK).filter(|lane| block.names[*lane] != [(0, 0); 2] && !block.is_held(*lane)).count()
@@ -178,7 +179,8 @@ impl<R: Real> Bed<R> {
         self.bonds.dropped + self.bonds.blocks.iter().map(broken).sum::<usize>() as u64
     }
 
-    /// Puts bonds into blocks, by where their pebbles stand in memory now. Their order depends on who is bound only.
+    /// Puts bonds into blocks, by the present positions of their pebbles in memory. Their order depends only on the
+    /// bonded pebbles.
     pub(super) fn bind(&mut self, mut bonds: Vec<Bond<R>>) -> Result<(), CellTooSmall> {
         bonds.sort_by_key(|bond| (bond.glue, bond.low, bond.high));
         let idle = self.owner.len() as u32;
@@ -211,12 +213,12 @@ impl<R: Real> Bed<R> {
         Ok(())
     }
 
-    /// Place of a pebble in memory.
+    /// Index of a pebble in memory.
     fn pebble_of(&self, (body, part): Name) -> u32 {
         self.bodies[self.index[body as usize] as usize].first + u32::from(part)
     }
 
-    /// The spring of the bond at a place; `None` where none holds.
+    /// The spring of the bond at a place; `None` if no intact bond is there.
     pub(super) fn bond_link(&self, place: usize) -> Option<Link> {
         let [a, b] = self.bonds.pebbles(place)?;
         let block = &self.bonds.blocks[place / BLOCK];
@@ -224,7 +226,7 @@ impl<R: Real> Bed<R> {
         Some(self.link(a, b, block.image[place % BLOCK], tangent))
     }
 
-    /// Adds what bonds bear to the states of the contacts beside them; a bond whose pebbles are apart is a contact of its own.
+    /// Adds the forces of bonds to the states of their contacts; a bond whose pebbles are apart is a separate contact.
     pub(super) fn add_bonds(&self, states: &mut Vec<ContactState>) {
         let before = self.contacts.len() + self.wall_contacts.slots.len();
         let listed: HashMap<(Party, Party), usize> =

@@ -23,7 +23,7 @@ pub(super) fn evaluate<R: Real>(
     total
 }
 
-/// The bonds of a task at work.
+/// The bonds of the task in work.
 struct Pass<'a, R: Real> {
     around: Surroundings<'a, R>,
     glues: &'a [Glue],
@@ -70,7 +70,7 @@ struct Held<L: Lanes> {
     shear: Vector<L>,
 }
 
-/// Forces of some bonds, and 1 for those that hold still. The energy of one that breaks is lost as by slip.
+/// Forces of some bonds, and 1 for bonds that stay intact. The energy of a breaking bond counts as lost by slip.
 #[inline(always)]
 fn act<L: Lanes>(lanes: L, glue: &Glue, meeting: &Meeting<L>, held: Held<L>, dt: f64) -> (ContactForces<L>, Num<L>) {
     let number = |value: f64| Num::splat(lanes, value);

@@ -1,4 +1,4 @@
-//! Bonds against closed forms; that lists, resumes and snapshots change no bit of them.
+//! Bonds against closed forms; lists, resumes and snapshots do not change a bit of them.
 
 use super::super::law::{ContactLaw, ContactLaws, Dashpot, DashpotMode, FrictionLimit, Linear};
 use super::super::{Bed, BodyId, ContactState, Domain, Gravity, Party, Sphere};
@@ -6,7 +6,7 @@ use super::Glue;
 
 const RADIUS: f64 = 0.03;
 const STIFF: f64 = 13e6;
-/// Overlap of neighbours as they are made, m.
+/// Initial overlap of neighbours, m.
 const OVERLAP: f64 = 1e-5;
 const GLUE: Glue = Glue { normal_stiffness: 10e6, shear_stiffness: 8e6, tensile_strength: 1e3, shear_strength: 600.0 };
 
@@ -21,7 +21,7 @@ fn law(friction: f64) -> ContactLaws {
     }))
 }
 
-/// Spheres one below the other, that touch.
+/// Touching spheres, one below the other.
 fn chain(count: usize) -> Bed<f64> {
     let mut bed = Bed::new(Domain::open(), law(0.0));
     for number in 0..count {
@@ -38,7 +38,7 @@ fn glued(mut bed: Bed<f64>, glue: Glue) -> Bed<f64> {
     bed
 }
 
-/// Two spheres of which the lower one is drawn away so fast, m/s.
+/// Two spheres; the lower one is drawn away at this velocity, m/s.
 fn drawn(velocity: [f64; 3]) -> Bed<f64> {
     let mut bed = glued(chain(2), GLUE);
     bed.set_velocity(BodyId(1), velocity, [0.0; 3]);
@@ -55,10 +55,10 @@ fn force(bed: &mut Bed<f64>) -> [f64; 3] {
 fn a_bond_pulls_by_its_stiffness_until_it_is_torn() {
     let mut bed = drawn([0.0, 0.0, -0.01]);
     bed.run(5000).unwrap();
-    // 50 um apart, of which the contact has lost its 10
+    // 50 um apart; the contact has lost its overlap of 10 um
     let pull = -force(&mut bed)[2];
     assert!((pull / (GLUE.normal_stiffness * 50e-6) - 1.0).abs() < 1e-6, "{pull}");
-    // torn at 100 um
+    // broken in tension at 100 um
     bed.run(4990).unwrap();
     assert_eq!((bed.bonds(), bed.broken_bonds()), (1, 0));
     bed.run(20).unwrap();
@@ -84,7 +84,7 @@ fn a_bond_shears_by_its_stiffness_until_it_is_cut() {
     bed.run(5000).unwrap();
     let drag = force(&mut bed)[0];
     assert!((drag / (GLUE.shear_stiffness * 50e-6) - 1.0).abs() < 1e-3, "{drag}");
-    // cut at 75 um
+    // broken in shear at 75 um
     bed.run(2450).unwrap();
     assert_eq!(bed.broken_bonds(), 0);
     bed.run(100).unwrap();
@@ -100,7 +100,7 @@ fn a_chain_hangs_by_its_bonds_as_springs_in_series_do() {
     let before = bed.body_state(BodyId(4)).place[2];
     bed.run(40_000).unwrap();
     let weight = 9.81 * bed.body_state(BodyId(1)).mass;
-    // the contact gives way under the weight beside the bond, and never lets go: 10 um are 130 N
+    // the contact deforms under the weight in parallel to the bond, and stays closed: 10 um are 130 N
     let pulled: f64 = (1..5).map(|below| f64::from(below) * weight / (GLUE.normal_stiffness + STIFF)).sum();
     let start = 4.0 * OVERLAP * STIFF / (GLUE.normal_stiffness + STIFF);
     let sunk = before - bed.body_state(BodyId(4)).place[2];
@@ -133,14 +133,15 @@ fn energy_is_kept_until_a_bond_breaks_and_what_it_held_is_lost() {
 #[test]
 fn the_stable_step_knows_of_bonds() {
     let mut loose = chain(2);
-    // both springs count: a pair is stable as long as the stiffer of its two directions is
+    // both springs count: a pair is stable if the stiffer of its two directions is stable
     let mut bound = glued(chain(2), Glue { shear_stiffness: GLUE.normal_stiffness, ..GLUE });
     let [loose, bound] = [&mut loose, &mut bound].map(|bed| bed.critical_step(0.0).unwrap().network.step);
     let stiffer = (1.0 + GLUE.normal_stiffness / STIFF).sqrt();
     assert!((loose / bound / stiffer - 1.0).abs() < 0.02, "{loose} {bound} {stiffer}");
 }
 
-/// A wall of spheres that falls on a floor, weakly glued side by side: those bonds break, and its columns hold.
+/// A wall of spheres that falls on a floor, weakly glued side by side: these bonds break, and the bonds of the columns
+/// hold.
 fn heap() -> Bed<f32> {
     let mut bed: Bed<f32> = Bed::new(Domain::open(), law(0.5));
     bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);

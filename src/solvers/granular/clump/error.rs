@@ -1,20 +1,20 @@
-//! Why pebbles make no clump.
+//! Why pebbles do not form a clump.
 
 use std::fmt;
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum TemplateError {
     NoPebbles,
-    /// A radius (m) that is no number above 0, or so far from 1 m that its fifth power is none.
+    /// A radius (m) that is not a finite number above 0, or so far from 1 m that its fifth power is out of range.
     Radius {
         pebble: usize,
         radius: f64,
     },
-    /// A centre that is no number.
+    /// A centre that is not a finite number.
     Centre {
         pebble: usize,
     },
-    /// A pebble that lies in another one: it adds nothing and touches nothing.
+    /// A pebble inside another pebble: it adds no volume and cannot touch anything.
     Swallowed {
         pebble: usize,
         inside: usize,
@@ -28,15 +28,15 @@ pub enum TemplateError {
 impl fmt::Display for TemplateError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            TemplateError::NoPebbles => write!(f, "a clump needs a pebble"),
+            TemplateError::NoPebbles => write!(f, "a clump needs at least one pebble"),
             TemplateError::Radius { pebble, radius } => {
-                write!(f, "expected a radius above 0 m and of a size that exists, found {radius} m at pebble {pebble}")
+                write!(f, "expected a finite radius above 0 m, found {radius} m at pebble {pebble}")
             }
-            TemplateError::Centre { pebble } => write!(f, "the centre of pebble {pebble} is not a number"),
+            TemplateError::Centre { pebble } => write!(f, "the centre of pebble {pebble} is not a finite number"),
             TemplateError::Swallowed { pebble, inside } => {
                 write!(f, "pebble {pebble} lies inside pebble {inside}")
             }
-            TemplateError::Apart { pebble } => write!(f, "pebble {pebble} does not hang together with pebble 0"),
+            TemplateError::Apart { pebble } => write!(f, "pebble {pebble} is not connected to pebble 0"),
         }
     }
 }

@@ -1,16 +1,17 @@
-//! The principal frame of a symmetric tensor, as near to the given axes as it can be.
+//! The principal frame of a symmetric tensor, as close to the given axes as possible.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-/// Values that differ by less than this share of their sum are equal: their axes are not turned against each other.
+/// Values that differ by less than this share of their sum count as equal: their axes are not rotated relative to each
+/// other.
 const EQUAL: f64 = 1e-9;
 
-/// Rounds of three rotations; convergence is quadratic, five are enough.
+/// Rounds of three rotations; convergence is quadratic, and five rounds are enough.
 const ROUNDS: usize = 20;
 
-/// Axes and values of a symmetric, positive tensor, by Jacobi's rotations (Golub and Van Loan, Matrix Computations, 8.5). No
-/// rotation exceeds 45 degrees and none is made without need, so values keep the order of the axes that they are nearest to,
-/// principal axes stay as they are, and equal values, whose axes are free, leave them to the given ones.
+/// Axes and values of a symmetric, positive tensor, by Jacobi's rotations (Golub and Van Loan, Matrix Computations,
+/// 8.5). No rotation exceeds 45 degrees and unnecessary rotations are left out. So values keep the order of the nearest
+/// given axes, principal axes stay unchanged, and for equal values, whose axes are arbitrary, the given axes stay.
 pub fn principal_frame(tensor: &Matrix3<f64>) -> (UnitQuaternion<f64>, Vector3<f64>) {
     let mut a = *tensor;
     let mut axes = Matrix3::identity();
@@ -31,7 +32,7 @@ pub fn principal_frame(tensor: &Matrix3<f64>) -> (UnitQuaternion<f64>, Vector3<f
     (UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)), a.diagonal())
 }
 
-/// The rotation that clears entry (p, q), or none where it is clear.
+/// The rotation that makes entry (p, q) zero, or none if it is zero.
 fn rotation(a: &Matrix3<f64>, p: usize, q: usize, size: f64) -> Option<Matrix3<f64>> {
     let (off, gap) = (a[(p, q)], a[(q, q)] - a[(p, p)]);
     let clear = off.abs() <= 1e-16 * size || (off.abs() <= EQUAL * size && gap.abs() <= EQUAL * size);

@@ -1,9 +1,9 @@
 //! Templates of clumps: overlapping spheres that move as one rigid body, with the mass properties of their union.
 //!
-//! Volume, centroid and inertia are those of the union, each part counted once however many pebbles hold it (PFC's "accounting
-//! for overlap"). They are integrated, not sampled: the error is below 1e-11 of the value, against closed forms of two and three
-//! spheres. Sines come from the platform, so the last digits of a template may differ between machines. A pebble that only
-//! others together hide adds nothing, and touches nothing.
+//! Volume, centroid and inertia are the values of the union; a part inside several pebbles is counted once (PFC's
+//! "accounting for overlap"). They are integrated, not sampled: the error is below 1e-11 of the value, compared with
+//! closed forms of two and three spheres. Sines come from the platform, so the last digits of a template may differ
+//! between machines. A pebble that is hidden only by several others together adds no volume, and cannot touch anything.
 
 mod error;
 mod frame;
@@ -19,15 +19,16 @@ use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Pebbles whose centres are this much farther apart than their radii, as a share, still touch: the rounding of a file.
+/// Pebbles still count as touching if their centres are farther apart than the sum of their radii by this share: the
+/// rounding of a file.
 const TOUCH: f64 = 1e-9;
 
-/// The fifth power of a radius (m) must be a number; from here to its inverse it is.
+/// The fifth power of a radius (m) must be a finite number; between this limit and its inverse it is.
 const SMALLEST: f64 = 1e-50;
 
 /// A shape of clumps, in its principal frame.
 ///
-/// A point p of the principal frame is `axes * p + centroid` in the frame in which the pebbles were given.
+/// A point p of the principal frame is `axes * p + centroid` in the frame of the given pebbles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Template {
     /// In the principal frame, about the centroid, in the order given.
@@ -36,15 +37,16 @@ pub struct Template {
     pub volume: f64,
     /// Principal moments of the union about its centroid for unit density, m⁵.
     pub inertia: Vector3<f64>,
-    /// In the frame as given, m.
+    /// Centroid in the given frame, m.
     pub centroid: Vector3<f64>,
-    /// From the principal frame to the frame as given. Axes that are principal already are kept, and so are any two about
-    /// which the moments are equal.
+    /// Rotation from the principal frame to the given frame. Given axes that are principal axes are kept, and so are
+    /// two axes with equal moments.
     pub axes: UnitQuaternion<f64>,
 }
 
 impl Template {
-    /// The template of these pebbles, in any frame. Time grows with the pebbles and the corners that they form together.
+    /// The template of these pebbles, in any frame. The computing time grows with the number of pebbles and of their
+    /// common corners.
     pub fn from_pebbles(pebbles: &[Pebble]) -> Result<Self, TemplateError> {
         check(pebbles)?;
         if let [pebble] = pebbles {
@@ -82,7 +84,7 @@ impl Template {
         }
     }
 
-    /// The same shape, larger by a `factor` above 0 about the origin of the frame as given.
+    /// The same shape, larger by a `factor` above 0 about the origin of the given frame.
     pub fn scaled(&self, factor: f64) -> Self {
         let larger = |p: &Pebble| Pebble { centre: p.centre * factor, radius: p.radius * factor };
         Self {
@@ -94,7 +96,7 @@ impl Template {
         }
     }
 
-    /// Diameter of the sphere of the same volume, m.
+    /// Diameter of the sphere with the same volume, m.
     pub fn equivalent_diameter(&self) -> f64 {
         (6.0 * self.volume / PI).cbrt()
     }
@@ -126,7 +128,7 @@ fn check(pebbles: &[Pebble]) -> Result<(), TemplateError> {
     apart_from_first(pebbles).map_or(Ok(()), |pebble| Err(TemplateError::Apart { pebble }))
 }
 
-/// A pebble that no chain of touching pebbles joins to the first.
+/// A pebble that no chain of touching pebbles connects to the first.
 fn apart_from_first(pebbles: &[Pebble]) -> Option<usize> {
     let mut joined = vec![false; pebbles.len()];
     joined[0] = true;

@@ -1,4 +1,4 @@
-//! Mass properties of clumps against closed forms, voxel sums and what must not change.
+//! Mass properties of clumps against closed forms, voxel sums and invariances.
 
 use super::*;
 use nalgebra::{Matrix3, Rotation3};
@@ -8,8 +8,8 @@ fn pebble(x: f64, y: f64, z: f64, radius: f64) -> Pebble {
     Pebble { centre: Vector3::new(x, y, z), radius }
 }
 
-/// `∫ π s²(x) dx` and so on, of the cap of a ball that reaches from x = `from` to its pole at `radius`: volume, first moment
-/// along x, second moments along and across x, all about the centre of the ball.
+/// `∫ π s²(x) dx` and similar integrals of the cap of a ball from x = `from` to its pole at `radius`: volume, first
+/// moment along x, second moments along and across x, all about the centre of the ball.
 fn cap(radius: f64, from: f64) -> [f64; 4] {
     let r2 = radius * radius;
     let primitive = |x: f64| {
@@ -25,10 +25,11 @@ fn cap(radius: f64, from: f64) -> [f64; 4] {
     std::array::from_fn(|k| end[k] - start[k])
 }
 
-/// Two balls on the x axis, the first about the origin: volume, centroid, second moments along and across about the centroid.
+/// Two balls on the x axis, the first about the origin: volume, centroid, second moments along and across about the
+/// centroid.
 fn two_balls(r1: f64, r2: f64, distance: f64) -> [f64; 4] {
     let plane = (r1 * r1 - r2 * r2 + distance * distance) / (2.0 * distance);
-    // Each ball up to the plane through their common circle; the first is seen from its far side.
+    // Each ball up to the plane through the common circle; the first is seen from its far side.
     let left = cap(r1, -plane);
     let right = cap(r2, plane - distance);
     let volume = left[0] + right[0];
@@ -68,8 +69,9 @@ fn two_spheres_have_their_closed_form() {
     }
 }
 
-/// The part of a unit ball on this side of two planes n·u = h, which cross in it: volume. By Gauss's theorem from the area
-/// of its round face, which has its corners and the curvature of its rims after Gauss and Bonnet, and its two flat faces.
+/// Volume of the part of a unit ball on this side of two planes n·u = h that intersect in it. By Gauss's theorem from
+/// the area of its round face, with the corners and the curvature of its rims by Gauss and Bonnet, and from its two
+/// flat faces.
 fn wedge(cosine: f64, heights: [f64; 2]) -> f64 {
     let sine = (1.0 - cosine * cosine).sqrt();
     let mut solid_angle = 4.0 * PI;
@@ -118,7 +120,7 @@ fn three_spheres_have_their_closed_form() {
 
 #[test]
 fn a_row_of_spheres_is_the_sum_of_its_parts() {
-    // Each touches the next in a point; Huygens and Steiner.
+    // Each touches the next in a point; parallel axis theorem.
     let row: Vec<_> = (0..5).map(|k| pebble(2.0 * f64::from(k), 0.0, 0.0, 1.0)).collect();
     let template = Template::from_pebbles(&row).unwrap();
     let ball = 4.0 / 3.0 * PI;
@@ -152,7 +154,7 @@ fn one_pebble_is_a_sphere() {
 
 #[test]
 fn a_ball_of_many_pebbles_is_nearly_the_ball() {
-    // Pebbles that barely look out of a ball: many corners, thin slivers.
+    // Pebbles that hardly stick out of a ball: many corners, thin slivers.
     let mut pebbles = vec![pebble(0.0, 0.0, 0.0, 1.0)];
     for k in 0..63 {
         let z = 1.0 - (2.0 * f64::from(k) + 1.0) / 63.0;
@@ -168,7 +170,8 @@ fn a_ball_of_many_pebbles_is_nearly_the_ball() {
     }
 }
 
-/// Moments by rods along x, each the exact union of its chords, on a square grid across: volume, centroid, inertia matrix.
+/// Moments by rods along x, each the exact union of its chords, on a square grid across: volume, centroid, inertia
+/// matrix.
 fn rods(pebbles: &[Pebble], count: usize) -> (f64, Vector3<f64>, Matrix3<f64>) {
     let reach = pebbles.iter().map(|p| p.centre.amax() + p.radius).fold(0.0, f64::max);
     let width = 2.0 * reach / count as f64;
@@ -202,13 +205,13 @@ fn rods(pebbles: &[Pebble], count: usize) -> (f64, Vector3<f64>, Matrix3<f64>) {
     (volume, centroid, Matrix3::identity() * central.trace() - central)
 }
 
-/// Inertia matrix in the frame as given.
+/// Inertia matrix in the given frame.
 fn inertia_as_given(template: &Template) -> Matrix3<f64> {
     let axes = template.axes.to_rotation_matrix();
     axes.matrix() * Matrix3::from_diagonal(&template.inertia) * axes.matrix().transpose()
 }
 
-/// Clumps of 2 to 8 pebbles in no order: each hangs on one before it.
+/// Clumps of 2 to 8 pebbles in no order: each is connected to an earlier one.
 fn clumps() -> impl Strategy<Value = Vec<Pebble>> {
     let one = (0.5..1.0f64, 0usize..8, 0.0..6.2f64, -1.0..1.0f64, 0.55..0.98f64);
     prop::collection::vec(one, 1..8).prop_map(|rest| {
@@ -232,7 +235,8 @@ proptest! {
     #[test]
     fn any_clump_agrees_with_a_sum_of_rods(pebbles in clumps()) {
         let template = Template::from_pebbles(&pebbles).unwrap();
-        // The rods' own errors, which fall with the square of their number across: 7e-5, 1.4e-4 and 6e-5 at worst in 50 clumps.
+        // The errors of the rods, which fall with the square of their number across: at most 7e-5, 1.4e-4 and 6e-5 in
+        // 50 clumps.
         let (volume, centroid, inertia) = rods(&pebbles, 400);
         prop_assert!(relative(template.volume, volume) < 3e-4);
         prop_assert!((template.centroid - centroid).norm() < 6e-4);
@@ -254,7 +258,7 @@ proptest! {
         prop_assert!((place(before.centroid) - after.centroid).norm() < 1e-11);
         let turned = rotation.matrix() * inertia_as_given(&before) * rotation.matrix().transpose();
         prop_assert!((turned - inertia_as_given(&after)).norm() < 1e-11 * turned.norm());
-        // Distances within the clump are those of the pebbles.
+        // Distances within the clump equal the distances of the given pebbles.
         for (k, p) in after.pebbles.iter().enumerate() {
             prop_assert!(((p.centre - after.pebbles[0].centre).norm() - (pebbles[k].centre - pebbles[0].centre).norm()).abs() < 1e-12);
         }
@@ -299,7 +303,7 @@ fn axes_that_are_principal_are_kept() {
 
 #[test]
 fn free_axes_do_not_hang_on_rounding() {
-    // Across a row that lies aslant, any axes would do; a nudge of the last digits must not turn them.
+    // For an inclined row, any axes across would do; a change of the last digits must not rotate them.
     let row = |nudge: f64| {
         let template =
             Template::from_pebbles(&[pebble(0.0, 0.0, 0.0, 1.0), pebble(0.7 + nudge, 0.5, 0.6, 1.0)]).unwrap();

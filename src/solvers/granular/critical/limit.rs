@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-/// Rounds after which the limit of one body is as good as it gets.
+/// Largest number of iterations for the limit of one body.
 const ROUNDS: usize = 60;
 
 /// The step at which `a dt^2 + 2 b dt = 4` \[s\]; infinite without stiffness and dashpot.
@@ -31,12 +31,13 @@ impl Pencil {
         (SMatrix::<f64, 6, 6>::identity() * 4.0 - self.at_step(dt)).cholesky().is_some()
     }
 
-    /// Factor of inertia that makes `dt` the limit; 1 is enough where it is above already.
+    /// Factor of inertia that makes `dt` the limit; 1 if the limit is above `dt` already.
     pub fn inertia_factor(&self, dt: f64) -> f64 {
         self.at_step(dt).symmetric_eigenvalues().max() / 4.0
     }
 
-    /// The limit \[s\]: from above, by the mode that grows fastest at the step before, which converges as Newton's iteration.
+    /// The limit \[s\]: iterated from above by the mode that grows fastest at the present step; it converges like
+    /// Newton's iteration.
     pub fn limit(&self) -> f64 {
         let mut dt = step(self.stiffness.trace(), self.dashpots.trace()) * 6.0;
         if !dt.is_finite() {

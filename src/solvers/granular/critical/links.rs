@@ -1,4 +1,4 @@
-//! The contacts that count, as springs and dashpots between rigid bodies.
+//! The relevant contacts, as springs and dashpots between rigid bodies.
 
 use super::super::bed::Bed;
 use super::super::body::{Body, SPHERE};
@@ -12,10 +12,10 @@ use super::super::vector::{Vec3, add, cross, dot, norm, scale, sub};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-/// Pairs that one task works on, at least.
+/// Smallest number of pairs of a task.
 const CHUNK: usize = 4096;
 
-/// Instead of a second body: a wall.
+/// Stands for a wall instead of a second body.
 pub const GROUND: u32 = u32::MAX;
 
 /// A body, and a pebble in it; two pebbles, and the image of the second.
@@ -32,7 +32,7 @@ pub struct Link {
     /// From the centroids to the contact point \[m\].
     pub arms: [Vec3; 2],
     pub tangent: Tangent,
-    /// Mass that ratios of damping refer to \[kg\].
+    /// Mass to which damping ratios refer \[kg\].
     pub mass: f64,
 }
 
@@ -42,13 +42,13 @@ impl Link {
         self.bodies.into_iter().enumerate().filter(|&(_, body)| body != GROUND)
     }
 
-    /// The same from its other end.
+    /// The same link seen from its other end.
     fn turned(self) -> Link {
         let ([a, b], [from_a, from_b]) = (self.bodies, self.arms);
         Link { bodies: [b, a], normal: scale(self.normal, -1.0), arms: [from_b, from_a], ..self }
     }
 
-    /// Velocity of the first against the second at the contact point.
+    /// Velocity of the first body relative to the second at the contact point.
     pub fn apart(&self, motions: &[[f64; 6]]) -> Vec3 {
         let at = |end: usize| {
             let [x, y, z, p, q, r] = motions[self.bodies[end] as usize];
@@ -57,7 +57,7 @@ impl Link {
         if self.bodies[1] == GROUND { at(0) } else { sub(at(0), at(1)) }
     }
 
-    /// Adds force and moment of `force` on the first to both.
+    /// Adds force and moment of `force` on the first body to both bodies.
     pub fn push(&self, force: Vec3, forces: &mut [[f64; 6]]) {
         for (end, body) in self.ends() {
             let force = if end == 0 { force } else { scale(force, -1.0) };
@@ -79,9 +79,9 @@ impl Link {
 /// Roots of the inverse inertia of a body, which scale its motions: u = root y.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Roots {
-    /// \[kg^-1/2\]
+    /// Root of the inverse mass \[kg^-1/2\].
     pub translation: f64,
-    /// Symmetric, in the world \[kg^-1/2 / m\].
+    /// Root of the inverse inertia, symmetric, in the world \[kg^-1/2 / m\].
     pub rotation: Matrix3<f64>,
 }
 
@@ -92,7 +92,7 @@ impl Roots {
         Roots { translation: self.translation * share, rotation: self.rotation * share }
     }
 
-    /// A bound of the largest root of rotation: the largest sum of a row.
+    /// An upper bound of the largest root of rotation: the largest row sum.
     pub fn widest_turn(&self) -> f64 {
         self.rotation.row_iter().map(|row| row.iter().map(|value| value.abs()).sum()).fold(0.0, f64::max)
     }
@@ -110,12 +110,13 @@ pub fn reduced(first: f64, second: f64) -> f64 {
 }
 
 impl<R: Real> Bed<R> {
-    /// Contacts of pairs up to `gap` \[m\] apart now, in an order that depends on who touches and not on the lists: sums over
-    /// them are the same, bit by bit, however the bodies lie in memory.
+    /// Contacts of pairs that are now up to `gap` \[m\] apart, in an order that depends on the touching bodies and not
+    /// on the lists: sums over them are the same, bit by bit, for any order of bodies in memory.
     pub(in super::super) fn links(&mut self, gap: f64) -> Result<Vec<Link>, Failure> {
         self.reach(gap)?;
         let named = |place: usize| (self.name_of_pair(place), place);
-        // one in four of the listed pairs touches: those alone are sorted, and computed twice rather than moved
+        // one in four of the listed pairs touches: only these are sorted, and computing them twice is cheaper than
+        // moving them
         let all = || (0..self.contacts.len()).into_par_iter().with_min_len(CHUNK);
         let mut pairs: Vec<_> = all().filter(|place| self.pair(*place, gap).is_some()).map(named).collect();
         pairs.par_sort_unstable();
@@ -131,14 +132,15 @@ impl<R: Real> Bed<R> {
         Ok(links)
     }
 
-    /// Names of the two pebbles of a listed pair and the image of the second, in an order that does not depend on the lists.
+    /// Names of the two pebbles of a listed pair and the image of the second, in an order that does not depend on the
+    /// lists.
     fn name_of_pair(&self, place: usize) -> PairName {
         let [a, b] = [self.contacts.first[place], self.contacts.second[place]].map(|pebble| self.name(pebble));
         let image = self.contacts.image[place];
         (a.min(b), a.max(b), if a < b { image } else { mirrored(image) })
     }
 
-    /// Contacts of now of one body, in the order that they have among those of all.
+    /// Present contacts of one body, in the same order as among the contacts of all bodies.
     pub(in super::super) fn own_links(&self, body: u32) -> Vec<Link> {
         let mut pairs: Vec<(PairName, Link)> = Vec::new();
         let mut walls: Vec<(PebbleName, u32, usize)> = Vec::new();
@@ -158,7 +160,7 @@ impl<R: Real> Bed<R> {
                     }
                     continue;
                 }
-                // a body that touches its own image has both ends of the contact
+                // a body that touches its own image owns both ends of the contact
                 let again = entry & 1 == 1 && self.owner[self.contacts.first[place] as usize] == body;
                 if let Some(link) = self.pair(place, 0.0).filter(|_| !again) {
                     pairs.push((self.name_of_pair(place), link));
@@ -177,7 +179,7 @@ impl<R: Real> Bed<R> {
         links
     }
 
-    /// Those of one body, as far as they are listed.
+    /// Contacts of one body, as far as they are listed.
     pub(in super::super) fn links_of(&self, body: u32, gap: f64) -> Vec<Link> {
         let mut links = Vec::new();
         let body = &self.bodies[body as usize];
@@ -223,10 +225,10 @@ impl<R: Real> Bed<R> {
         }));
     }
 
-    /// Makes lists that hold all pairs up to `gap` apart.
+    /// Makes lists that contain all pairs up to `gap` apart.
     pub(in super::super) fn reach(&mut self, gap: f64) -> Result<(), Failure> {
         self.refresh()?;
-        // lists are good for their skin less what was gone since
+        // lists are valid for their skin less the approach since then
         if gap + self.lists.travel <= self.lists.skin {
             return Ok(());
         }
@@ -272,11 +274,11 @@ impl<R: Real> Bed<R> {
             tangent,
             mass: reduced(one.mass().to_f64(), other.mass().to_f64()),
         };
-        // which of two comes first in a list is chance
+        // the order of the two pebbles in a list is arbitrary
         if self.name(a) < self.name(b) { link } else { link.turned() }
     }
 
-    /// From the centroid of a pebble's body to a point given from the pebble's centre.
+    /// From the centroid of the body of a pebble to a point given relative to the centre of the pebble.
     fn arm(&self, pebble: u32, from_centre: Vec3) -> Vec3 {
         let body = &self.bodies[self.owner[pebble as usize] as usize];
         match body.clump {
@@ -288,7 +290,7 @@ impl<R: Real> Bed<R> {
         }
     }
 
-    /// Roots of the inverse inertia of all bodies by their numbers, as local damping leaves it.
+    /// Roots of the inverse inertia of all bodies by their numbers, including the effect of local damping.
     pub(in super::super) fn roots(&self) -> Vec<Roots> {
         let places = self.index.par_iter().with_min_len(CHUNK);
         places.map(|&place| self.root(&self.bodies[place as usize])).collect()

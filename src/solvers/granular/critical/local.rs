@@ -1,9 +1,9 @@
 //! Limits by the contacts of one body at a time.
 //!
-//! For a spring between two bodies and any share s > 0, |u1 - u2|^2 <= (1 + s) |u1|^2 + (1 + 1/s) |u2|^2. So a body whose
-//! contacts count (1 + s) times, its neighbours held, gives with the worst of all bodies a step that is never too long. With
-//! s = 1 that is the row sum; s = D2/D1, each body's own stiffness over its inertia, is sharper, and exact for two bodies
-//! alone (Merris 1998, for the largest eigenvalue of a graph).
+//! For a spring between two bodies and any share s > 0, |u1 - u2|^2 <= (1 + s) |u1|^2 + (1 + 1/s) |u2|^2. So take each
+//! body with its neighbours fixed and its contacts counted (1 + s) times: the smallest limit of all bodies is a step
+//! that is never too long. s = 1 is the row sum. s = D2/D1, with the stiffness of each body over its inertia, is
+//! sharper, and exact for an isolated pair of bodies (Merris 1998, for the largest eigenvalue of a graph).
 
 use super::super::vector::dot;
 use super::limit::{Pencil, step};
@@ -11,7 +11,7 @@ use super::links::{Link, Roots};
 use nalgebra::{SVector, Vector3};
 use rayon::prelude::*;
 
-/// Bodies that one task works on. Fixed, so that threads change nothing.
+/// Bodies of one task. The number is fixed, so that the number of threads does not change the results.
 const CHUNK: usize = 512;
 
 /// Links of each body.
@@ -47,10 +47,10 @@ impl Around {
     }
 }
 
-/// How often a contact between bodies counts for each of them.
+/// How many times a contact between bodies counts for each of them.
 #[derive(Debug, Clone, Copy)]
 pub enum Weight<'a> {
-    /// Alike for both.
+    /// Equally for both.
     Even(f64),
     /// By the stiffness over inertia of each body.
     Shared(&'a [f64]),
@@ -67,7 +67,7 @@ impl Weight<'_> {
     }
 }
 
-/// Stiffness and dashpots of a body whose neighbours are held; `links` are all of its own.
+/// Stiffness and dashpots of a body with fixed neighbours; `links` are all links of the body.
 pub fn pencil<'a>(body: usize, root: &Roots, links: impl IntoIterator<Item = &'a Link>, weight: Weight) -> Pencil {
     let mut sum = Pencil::zero();
     for link in links {
@@ -94,8 +94,8 @@ pub fn pencil<'a>(body: usize, root: &Roots, links: impl IntoIterator<Item = &'a
     sum
 }
 
-/// Whether the traces alone show that a body, its neighbours held, bears a step: no eigenvalue is above the trace. Costs a tenth of
-/// [`pencil`], and is enough for most grains of a bed.
+/// Whether the traces alone show that a step is stable for a body with fixed neighbours: no eigenvalue exceeds the
+/// trace. It costs a tenth of [`pencil`], and is sufficient for most grains of a bed.
 pub fn surely_allows<'a>(
     body: usize,
     root: &Roots,
@@ -109,7 +109,7 @@ pub fn surely_allows<'a>(
         for (end, _) in link.ends().filter(|&(_, b)| b as usize == body) {
             let share = weight.count(body, link.bodies[1 - end]);
             let lever = turn * dot(link.arms[end], link.arms[end]);
-            // one direction more than those of the shear; a lever turns about two of three axes
+            // shear stiffness in three directions, the rest of the normal stiffness in one; an arm turns about two axes
             let all = |normal: f64, shear: f64| {
                 share * ((normal - shear).max(0.0) * (go + lever) + shear * (3.0 * go + 2.0 * lever))
             };
@@ -117,11 +117,12 @@ pub fn surely_allows<'a>(
             dashpots += all(link.tangent.normal_dashpot, link.tangent.shear_dashpot);
         }
     }
-    // a little less than 4, for rounding
+    // slightly less than 4, for rounding
     step * (step * stiffness + 2.0 * dashpots) < 3.999
 }
 
-/// How stiff every body is by its own contacts, over its inertia: a scale, by the traces at one step for all.
+/// Stiffness of every body by its own contacts, divided by its inertia: a scale from the traces at one step for all
+/// bodies.
 pub fn own(links: &[Link], roots: &[Roots], around: &Around) -> Vec<f64> {
     let traces = |body| {
         let pencil = pencil(body, &roots[body], around.pick(body, links), Weight::Even(1.0));
@@ -135,7 +136,7 @@ pub fn own(links: &[Link], roots: &[Roots], around: &Around) -> Vec<f64> {
     all.into_iter().map(|(a, b)| dt * dt * a + 2.0 * dt * b).collect()
 }
 
-/// The bound: the shortest limit of a body, and its place.
+/// The bound: the smallest limit of a body, and the index of this body.
 pub fn bound(links: &[Link], roots: &[Roots], around: &Around) -> (f64, Option<u32>) {
     let own = own(links, roots, around);
     let worst = |chunk: usize| {
@@ -154,7 +155,7 @@ pub fn bound(links: &[Link], roots: &[Roots], around: &Around) -> (f64, Option<u
     least((0..roots.len().div_ceil(CHUNK)).into_par_iter().map(worst).collect())
 }
 
-/// PFC's estimate without its safety factor, and the place of the body that sets it.
+/// PFC's estimate without its safety factor, and the index of the body that sets it.
 pub fn estimate(links: &[Link], roots: &[Roots], around: &Around) -> (f64, Option<u32>) {
     let of = |body: usize| {
         let root = &roots[body];

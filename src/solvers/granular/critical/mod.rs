@@ -1,22 +1,22 @@
-//! How long a time step may be: methods 1.4.
+//! The longest stable time step (methods 1.4).
 //!
-//! The leapfrog with dashpots that see the velocity of half a step before is, for contacts that stay as they are,
+//! The leapfrog, with dashpots that depend on the velocity of half a step before, is for unchanged contacts
 //!
 //! ```text
 //! M (x[n+1] - 2 x[n] + x[n-1]) / dt^2 + C (x[n] - x[n-1]) / dt + K x[n] = 0.
 //! ```
 //!
-//! Put x[n] = z^n u: with a = u'Ku and b = u'Cu for u'Mu = 1, z^2 + (a dt^2 + b dt - 2) z + 1 - b dt = 0, and both roots stay
-//! in the unit circle exactly while a dt^2 + 2 b dt < 4. So a step is stable where 4 M - dt^2 K - 2 dt C is positive
-//! definite, and at the limit a mode turns round in every step (z = -1). For one oscillator of frequency w and damping ratio
-//! xi this is dt < (2/w) (sqrt(1 + xi^2) - xi).
+//! Put x[n] = z^n u: with a = u'Ku and b = u'Cu for u'Mu = 1, z^2 + (a dt^2 + b dt - 2) z + 1 - b dt = 0, and both
+//! roots stay in the unit circle exactly if a dt^2 + 2 b dt < 4. So a step is stable if 4 M - dt^2 K - 2 dt C is
+//! positive definite, and at the limit a mode reverses its motion in every step (z = -1). For one oscillator of
+//! frequency w and damping ratio xi this is dt < (2/w) (sqrt(1 + xi^2) - xi).
 //!
-//! Local damping makes a force larger by its share while it brakes a body, and in that mode it brakes all the time: the limit is
-//! that of inertia less by the factor 1 + alpha, (2/w) / sqrt(1 + alpha) for one oscillator.
+//! Local damping increases a force by its share while the force brakes a body; in that mode it always brakes. So the
+//! limit is the limit for inertia reduced by the factor 1 + alpha: (2/w) / sqrt(1 + alpha) for one oscillator.
 //!
-//! K and C are those of the contacts as they are: springs and dashpots at full stiffness whether they slip or not, arms of
-//! clumps, inertia with what mass scaling added, walls and fixed bodies at rest. Left out is how forces turn with their
-//! contacts, a share of about overlap over radius.
+//! K and C are the matrices of the present contacts: springs and dashpots at full stiffness even if they slip, lever
+//! arms of clumps, inertia including mass scaling, walls and fixed bodies at rest. The rotation of forces with their
+//! contacts is left out; its share is about overlap over radius.
 
 mod limit;
 mod links;
@@ -36,53 +36,54 @@ use super::force::Tangent;
 use super::lanes::{BLOCK, Real};
 use super::record::Record;
 
-/// Where a limit comes from.
+/// The origin of a limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LimitSeat {
     pub body: BodyId,
     /// \[m\]
     pub place: [f64; 3],
     pub surface: u16,
-    /// Contacts of the body that count.
+    /// Number of contacts of the body that count.
     pub contacts: usize,
 }
 
-/// A largest time step, and the body that sets it.
+/// A largest stable time step, and the body that sets it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// \[s\]; infinite where nothing touches.
+    /// \[s\]; infinite if nothing touches.
     pub step: f64,
     pub seat: Option<LimitSeat>,
 }
 
-/// How long a time step may be, by three rules.
+/// The longest stable time step, by three rules.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CriticalStep {
-    /// PFC's rule without its safety factor of 0.8: the least sqrt(m / k) over bodies and axes, stiffness over
-    /// (sqrt(1 + beta^2) - beta)^2. Neither a bound nor exact: half of what is stable for a lone body without dashpots, too
-    /// long for some beds with them.
+    /// PFC's rule without its safety factor of 0.8: the smallest sqrt(m / k) over bodies and axes, with the stiffness
+    /// divided by (sqrt(1 + beta^2) - beta)^2. It is neither a bound nor exact: half of the stable step for a single
+    /// body without dashpots, too long for some beds with dashpots.
     pub estimate: Limit,
-    /// By the contacts of one body at a time, coupled with its rotation and weighed against its neighbours. Never too long.
+    /// The limit by the contacts of one body at a time, coupled with its rotation and weighted with its neighbours.
+    /// Never too long.
     pub bound: Limit,
-    /// By the whole network of contacts; too short by [`CriticalStep::residual`] at most.
+    /// The limit by the whole network of contacts; too short by at most [`CriticalStep::residual`].
     pub network: Limit,
-    /// Relative uncertainty of the network's limit, already taken off.
+    /// Relative uncertainty of the network limit, already subtracted.
     pub residual: f64,
-    /// Contacts that count.
+    /// Number of contacts that count.
     pub contacts: usize,
-    /// What the network's limit has cost, in sweeps over all contacts.
+    /// Cost of the network limit, in sweeps over all contacts.
     pub sweeps: usize,
 }
 
-/// Relative uncertainty that the network's limit is iterated to.
+/// Relative uncertainty to which the network limit is iterated.
 const TOLERANCE: f64 = 2e-3;
 
 impl<R: Real> Bed<R> {
-    /// How long a step may be with the contacts of now; those of pairs up to `gap` \[m\] apart count too, so that a step may be
-    /// chosen before they close.
+    /// The longest stable step with the present contacts. Contacts of pairs up to `gap` \[m\] apart count too, so that
+    /// a step is chosen before they close.
     ///
-    /// Springs after Hertz count with the stiffness of their present overlap. The motion goes on as if nobody had asked, bit
-    /// by bit. Fails only where lists of neighbours cannot be made.
+    /// Hertz springs count with the stiffness of their present overlap. The motion afterwards is unchanged, bit by bit.
+    /// Fails only if neighbour lists cannot be made.
     pub fn critical_step(&mut self, gap: f64) -> Result<CriticalStep, Failure> {
         let links = self.links(gap)?;
         let roots = self.roots();
@@ -115,7 +116,7 @@ impl<R: Real> Bed<R> {
         LimitSeat { body: state.id, place: state.place, surface: state.surface, contacts }
     }
 
-    /// A stable time step by the contacts of the last step, body by body and cheaply \[s\]; infinite without contacts.
+    /// A stable time step by the contacts of the last step, body by body, at low cost \[s\]; infinite without contacts.
     ///
     /// Shorter than [`CriticalStep::bound`]: each contact counts with its stiffer direction.
     pub fn body_time_step(&self) -> f64 {
@@ -153,7 +154,7 @@ impl<R: Real> Bed<R> {
         sums.iter().map(|&[a, b]| limit::step(braked * a, braked * b)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Most that a unit force at a pebble's surface moves it, along and across \[1/kg\].
+    /// Largest displacement per unit force on the surface of a pebble, along and across \[1/kg\].
     fn mobility(&self, place: u32, pebble: u32) -> (f64, f64) {
         let body = &self.bodies[place as usize];
         let radius = self.records[pebble as usize].radius();

@@ -1,8 +1,9 @@
 //! The limit of the whole network of contacts, without a matrix.
 //!
-//! For a step dt the largest eigenvalue of dt^2 K + 2 dt C, inertia scaled to one, is climbed by locally optimal conjugate
-//! gradients (Knyazev 2001): one sweep over the contacts a round, three vectors kept. Its mode gives the next step, from
-//! above, as for one body; what remains as residual is taken off, for the eigenvalue is at most that much larger.
+//! For a step dt the largest eigenvalue of dt^2 K + 2 dt C, inertia scaled to one, is computed by locally optimal
+//! conjugate gradients (Knyazev 2001): one sweep over the contacts per iteration, three vectors stored. Its mode gives
+//! the next step from above, as for one body. The remaining residual is subtracted, because the eigenvalue is larger by
+//! at most the residual.
 
 use super::limit::step;
 use super::links::{Link, Roots};
@@ -11,9 +12,9 @@ use nalgebra::Matrix3;
 
 type Motions = Vec<[f64; 6]>;
 
-/// Sweeps at most; none of the beds that were tried took half of them.
+/// Largest number of sweeps; none of the tested beds needed half of them.
 const MOST: usize = 400;
-/// Steps tried at most.
+/// Largest number of trial steps.
 const ROUNDS: usize = 8;
 
 /// Springs and dashpots between bodies whose inertia is scaled to one.
@@ -27,13 +28,13 @@ pub struct Network<'a> {
 pub struct NetworkLimit {
     /// \[s\]
     pub step: f64,
-    /// The body that moves most in the mode.
+    /// The body with the largest motion in the mode.
     pub body: Option<u32>,
     pub residual: f64,
     pub sweeps: usize,
 }
 
-/// The mode so far: a unit vector, what the network makes of it, and the direction that it came from.
+/// The present mode: a unit vector, its image by the network, and the last search direction.
 struct Climb {
     mode: Motions,
     image: Motions,
@@ -49,7 +50,7 @@ impl<'a> Network<'a> {
         Network { links, roots }
     }
 
-    /// The limit, no shorter than a `bound` that is known, to a relative tolerance.
+    /// The limit, not shorter than a known `bound`, to a relative tolerance.
     pub fn limit(&self, around: &Around, bound: f64, tolerance: f64) -> NetworkLimit {
         let none = NetworkLimit { step: f64::INFINITY, body: None, residual: 0.0, sweeps: 0 };
         if !bound.is_finite() {
@@ -69,7 +70,8 @@ impl<'a> Network<'a> {
             }
             dt = next;
         }
-        // at dt the largest eigenvalue is at most this; it falls with the step at least, and grows with its square at most
+        // at dt the largest eigenvalue is at most this; it decreases at least in proportion to the step, and increases
+        // at most with its square
         let most = climb.value + climb.residual;
         let safe = if most > 4.0 { dt * 4.0 / most } else { dt * (4.0 / most).sqrt() };
         let body = largest(&climb.mode);
@@ -90,7 +92,7 @@ impl<'a> Network<'a> {
         forces
     }
 
-    /// Twice the energy in the springs, and loss in the dashpots, of a mode.
+    /// Twice the energy in the springs, and the loss in the dashpots, for a mode.
     fn forms(&self, mode: &[[f64; 6]]) -> (f64, f64) {
         let moved: Motions = mode.iter().zip(self.roots).map(|(y, root)| root.apply(*y)).collect();
         let (mut a, mut b) = (0.0, 0.0);
@@ -104,7 +106,7 @@ impl<'a> Network<'a> {
         (a, b)
     }
 
-    /// Motions by chance, larger where a body alone is stiff: there the mode is likely to be.
+    /// Random motions, larger for bodies with a high stiffness, where the mode is likely to be.
     fn start(&self, around: &Around) -> Motions {
         let own = own(self.links, self.roots, around);
         let largest = own.iter().copied().fold(0.0, f64::max);
@@ -125,7 +127,8 @@ impl Climb {
         Climb { image: zero.clone(), way: zero.clone(), way_image: zero, mode, value: 0.0, residual: f64::INFINITY }
     }
 
-    /// Climbs until the residual is `tolerance` of the eigenvalue or `most` sweeps are spent; gives the sweeps.
+    /// Iterates until the residual is `tolerance` of the eigenvalue or `most` sweeps are done; returns the number of
+    /// sweeps.
     fn run(&mut self, sweep: impl Fn(&[[f64; 6]]) -> Motions, tolerance: f64, most: usize) -> usize {
         let zero = vec![[0.0; 6]; self.mode.len()];
         (self.way, self.way_image) = (zero.clone(), zero);
@@ -147,9 +150,9 @@ impl Climb {
         unreachable!("the loop returns")
     }
 
-    /// The best of the plane of mode, residual and the way so far.
+    /// The best vector in the space of mode, residual and last direction.
     fn improve(&mut self, mut rest: Motions, mut rest_image: Motions) {
-        // an orthonormal basis; rounding leaves a little of the mode in the residual
+        // an orthonormal basis; by rounding the residual still contains a little of the mode
         let left = dot(&rest, &self.mode);
         add(&mut rest, -left, &self.mode);
         add(&mut rest_image, -left, &self.image);

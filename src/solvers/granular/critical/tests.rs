@@ -1,4 +1,4 @@
-//! Limits against closed forms, and against runs that grow or do not.
+//! Limits against closed forms, and against runs that grow or do not grow.
 
 use super::*;
 use crate::solvers::granular::clump::{Pebble, Template};
@@ -13,7 +13,7 @@ const RADIUS: f64 = 0.02;
 const DENSITY: f64 = 2700.0;
 const STIFFNESS: f64 = 1.3e7;
 
-/// Overlap that moves no digit of a limit.
+/// Overlap that does not change a digit of a limit.
 const TOUCH: f64 = 1e-11;
 
 pub(in super::super) fn law(shear: f64, ratios: [f64; 2]) -> ContactLaw {
@@ -39,7 +39,7 @@ fn mass(radius: f64) -> f64 {
     DENSITY * 4.0 / 3.0 * PI * radius.powi(3)
 }
 
-/// Spheres of these radii side by side along x, from the origin on.
+/// Spheres with these radii side by side along x, from the origin on.
 fn row(bed: &mut Bed<f64>, radii: &[f64]) {
     let mut x = 0.0;
     for &radius in radii {
@@ -65,7 +65,7 @@ fn same(found: f64, expected: f64) {
     assert!((found / expected - 1.0).abs() < 1e-6, "{found} for {expected}");
 }
 
-/// The network's limit has the residual taken off, and is otherwise exact.
+/// The network limit has the residual subtracted, and is otherwise exact.
 #[track_caller]
 fn near(step: &CriticalStep, expected: f64) {
     let share = step.network.step / expected;
@@ -82,7 +82,7 @@ fn a_sphere_between_two_walls() {
     same(step.bound.step, normal);
     same(step.estimate.step, normal / 2.0);
     assert_eq!((step.contacts, step.network.seat.unwrap().contacts), (2, 2));
-    // stiff in shear it turns first: w^2 = 5 kt/m
+    // with stiff shear springs the sphere rotates first: w^2 = 5 kt/m
     let step = found(&mut between_walls(law(1.0, [0.0; 2])));
     near(&step, 2.0 / (5.0 * STIFFNESS / m).sqrt());
     // lagged dashpots: (2/w) (sqrt(1 + 2 z^2) - sqrt(2) z)
@@ -90,7 +90,8 @@ fn a_sphere_between_two_walls() {
         let step = found(&mut between_walls(law(0.1, [z, 0.0])));
         near(&step, normal * ((1.0 + 2.0 * z * z).sqrt() - 2f64.sqrt() * z));
     }
-    // and in shear, where c = 2 z sqrt(m kt) turns the sphere 2.5 times as strongly as it moves it
+    // and in shear, where c = 2 z sqrt(m kt) has an effect on the rotation of the sphere 2.5 times as large as on its
+    // motion
     let step = found(&mut between_walls(law(1.0, [0.0, 0.3])));
     let xi = 0.3 * 5f64.sqrt();
     near(&step, 2.0 / (5.0 * STIFFNESS / m).sqrt() * ((1.0 + xi * xi).sqrt() - xi));
@@ -135,7 +136,7 @@ fn two_spheres_of_any_sizes() {
         near(&step, 2.0 / (STIFFNESS / reduced).sqrt() * (1.09f64.sqrt() - 0.3));
         same(step.bound.step, step.network.step / (1.0 - step.residual).min(1.0));
         assert_eq!(step.network.seat.unwrap().body, BodyId(0), "the lighter one is the seat");
-        // rolling on each other: both turn the same way, (1/m + r^2/I) = 3.5/m for each
+        // rolling on each other: both rotate in the same direction, (1/m + r^2/I) = 3.5/m for each
         let mut rough = bed(law(1.0, [0.0; 2]));
         row(&mut rough, &radii);
         near(&found(&mut rough), 2.0 / (3.5 * STIFFNESS / reduced).sqrt());
@@ -177,7 +178,7 @@ fn a_clump_of_two_rocks_on_its_feet() {
     near(&step, 2.0 / fastest.sqrt());
     same(step.bound.step, 2.0 / fastest.sqrt());
     same(step.estimate.step, 1.0 / fastest.sqrt());
-    // turned in the world nothing changes
+    // rotated in the world, the result is the same
     let turn = UnitQuaternion::from_euler_angles(0.3, -1.0, 2.0);
     let mut turned = self::bed(law(0.0, [0.0; 2]));
     let up = turn * Vector3::z();
@@ -210,13 +211,13 @@ fn without_contacts_there_is_no_limit_but_a_gap_may_count() {
     assert_eq!((step.network.step, step.network.seat, step.contacts), (f64::INFINITY, None, 0));
     assert_eq!((step.bound.step, step.estimate.step), (f64::INFINITY, f64::INFINITY));
     near(&bed.critical_step(2e-4).unwrap(), 2.0 / (2.0 * STIFFNESS / mass(RADIUS)).sqrt());
-    // further than lists reach by themselves
+    // farther than the normal reach of the lists
     assert_eq!(bed.critical_step(0.9e-4).unwrap().contacts, 0);
     bed.add_sphere(&sphere([0.0, 2.9 * RADIUS, 0.0], RADIUS));
     assert_eq!(bed.critical_step(0.91 * RADIUS).unwrap().contacts, 2);
 }
 
-/// Spheres of radii within a tenth, pressed into a periodic box until all is at rest.
+/// Spheres with radii within a tenth of each other, pressed into a periodic box until all are at rest.
 pub(in super::super) fn pressed(side: usize, law: ContactLaw) -> Bed<f64> {
     let spacing = 1.85 * RADIUS;
     let length = side as f64 * spacing;
@@ -239,7 +240,7 @@ pub(in super::super) fn pressed(side: usize, law: ContactLaw) -> Bed<f64> {
     bed.set_time_step(8e-6);
     for _ in 0..8 {
         bed.run(1000).unwrap();
-        // what touches nothing is stopped by nothing else
+        // bodies without contacts are stopped here, because nothing else stops them
         (0..bed.len() as u32).for_each(|id| bed.set_velocity(BodyId(id), [0.0; 3], [0.0; 3]));
     }
     bed.run(4000).unwrap();
@@ -289,8 +290,8 @@ fn a_bed_is_stable_below_the_limit_of_its_network_and_grows_above() {
     }
 }
 
-/// A simple cubic lattice that does not turn, pressed a little: six equal contacts, of which two are normal in each direction. With dashpots
-/// in both directions xi = beta sqrt(6), with normal ones alone a third of that.
+/// A simple cubic lattice without rotation, slightly compressed: six equal contacts per sphere, two of them normal in
+/// each direction. With dashpots in both directions xi = beta sqrt(6), with normal dashpots alone a third of this.
 #[test]
 fn a_lattice_grows_where_the_theory_says() {
     for ratios in [[0.0; 2], [0.3, 0.0], [0.3; 2], [1.0, 0.0], [1.0; 2]] {

@@ -1,10 +1,10 @@
-//! Angular grains where there is no scan: an ellipsoid cut by planes at random, its edges rounded.
+//! Angular grains without a scan: an ellipsoid cut by random planes, with rounded edges.
 //!
-//! Planes with normals spread over the sphere cut a ball at random depths; the body between them is stretched to the
-//! ellipsoid, and everything within a radius of it is the grain. Roundness is that radius over the radius of the
-//! largest inscribed ball (Wadell 1932, all corners alike): 0 is a body with sharp edges, 1 would be a ball. The body
-//! is stretched again until flatness and elongation of the grain, as measured by its smallest box, are those that are
-//! asked for.
+//! Planes with normals distributed over the sphere cut a ball at random depths. The body between them is stretched to
+//! the ellipsoid; the grain is everything within a radius of this body. Roundness is that radius divided by the radius
+//! of the largest inscribed ball (Wadell 1932, all corners alike): 0 is a body with sharp edges, 1 would be a ball. The
+//! body is stretched again until flatness and elongation of the grain, measured on its smallest box, have the required
+//! values.
 
 use super::super::shape::{Mesh, MeshKind};
 use super::Random;
@@ -19,25 +19,25 @@ use std::fmt;
 const CUTS: usize = 16;
 /// Distance of cuts from the centre, over the radius of the ball.
 const DEPTHS: [f64; 2] = [0.72, 1.0];
-/// Normals that are tried for each cut: the one farthest from its neighbours is taken.
+/// Number of random normals tried for each cut: the one farthest from its neighbours is taken.
 const TRIED: usize = 8;
 /// Triangles along an arc of a rounded edge.
 const SEGMENTS: usize = 3;
-/// How near the indices come to those that are asked for, as a share of them.
+/// Tolerance of the shape indices, as a share of the required values.
 pub const TOLERANCE: f64 = 0.01;
-/// Rounds of stretching; one halves the error at least.
+/// Largest number of stretching rounds; a round at least halves the error.
 const ROUNDS: usize = 30;
-/// Bodies that are cut before it is given up.
+/// Number of bodies that are cut before the search fails.
 const BODIES: u64 = 20;
 
-/// Which grain is wanted.
+/// The required grain.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Angular {
     /// Shortest over intermediate side of the smallest box.
     pub flatness: f64,
     /// Intermediate over longest side.
     pub elongation: f64,
-    /// Radius of edges and corners over that of the largest inscribed ball.
+    /// Radius of edges and corners divided by the radius of the largest inscribed ball.
     pub roundness: f64,
 }
 
@@ -46,16 +46,16 @@ pub struct Angular {
 pub enum AngularError {
     /// A flatness, elongation or roundness outside its range.
     Index { name: &'static str, value: f64, range: [f64; 2] },
-    /// No body came near to the indices.
+    /// No body reached the required indices.
     NotReached,
 }
 
 impl Angular {
-    /// Flatness and elongation of a grain.
+    /// Range of flatness and elongation of a grain.
     pub const FORMS: [f64; 2] = [0.3, 1.0];
     pub const ROUNDNESSES: [f64; 2] = [0.0, 0.6];
 
-    /// A closed surface of unit volume-equivalent diameter about its centroid, by the seed and the number of the grain.
+    /// A closed surface with equivalent diameter 1 about its centroid, for the seed and the number of the grain.
     pub fn surface(&self, seed: u64, number: u64) -> Result<Mesh, AngularError> {
         let forms = [("flatness", self.flatness, Self::FORMS), ("elongation", self.elongation, Self::FORMS)];
         for (name, value, range) in forms.into_iter().chain([("roundness", self.roundness, Self::ROUNDNESSES)]) {
@@ -70,7 +70,7 @@ impl Angular {
         (0..BODIES).find_map(body).ok_or(AngularError::NotReached)
     }
 
-    /// The grain of planes that cut a ball; `None` where it cannot be stretched to its form.
+    /// The grain of planes that cut a ball; `None` if it cannot be stretched to its form.
     fn body(&self, mut planes: Vec<Plane>) -> Option<Mesh> {
         // longest side 1
         let wanted = [self.flatness * self.elongation, self.elongation, 1.0];
@@ -84,7 +84,7 @@ impl Angular {
             if (0..2).all(|k| (ratio(k) - 1.0).abs() < 0.5 * TOLERANCE) {
                 return grain(&vertices, triangles);
             }
-            // the rounding grows with the shortest side of the sharp body, and is left out of what is stretched
+            // the rounding grows with the shortest side of the sharp body, and is excluded from stretching
             let (length, sharp) = (around.sides[2], around.sides.map(|side| side - 2.0 * radius));
             let rounding = wanted[0] * length * radius / around.sides[0];
             let factor = |k: usize| ((wanted[k] * length - 2.0 * rounding) / sharp[k]).clamp(0.5, 2.0);
@@ -95,10 +95,10 @@ impl Angular {
     }
 }
 
-/// Streams of numbers by chance from here on are those of shapes.
+/// First random stream for shapes.
 const SHAPES: u64 = 1 << 32;
 
-/// Planes round the unit ball and through it.
+/// Planes around the unit ball and through it.
 fn cuts(random: &mut Random) -> Vec<Plane> {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     let mut planes: Vec<Plane> =
@@ -117,7 +117,7 @@ fn stretched(planes: &[Plane], stretch: &Matrix3<f64>) -> Vec<Plane> {
     planes.iter().map(|plane| plane.stretched(&inverse)).collect()
 }
 
-/// The surface, of unit equivalent diameter about its centroid.
+/// The surface, with equivalent diameter 1, about its centroid.
 fn grain(vertices: &[Vector3<f64>], triangles: Vec<[u32; 3]>) -> Option<Mesh> {
     let solid = Solid::inside(vertices, &triangles);
     let scale = (PI / 6.0 / solid.volume).cbrt();
@@ -132,7 +132,7 @@ impl fmt::Display for AngularError {
                 write!(f, "expected a {name} from {low} to {high}, found {value}")
             }
             AngularError::NotReached => {
-                write!(f, "no grain of these indices was found; make it less flat or less round")
+                write!(f, "no grain with these shape indices was found; make it less flat or less round")
             }
         }
     }

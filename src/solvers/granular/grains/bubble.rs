@@ -1,14 +1,15 @@
-//! Bubble-pack: a few of the largest balls that fit into a surface, so that their union looks like it.
+//! Bubble-pack: a few of the largest balls that fit into a surface, so that their union approximates the surface.
 //!
-//! Taghavi (2011) keeps of the maximal inscribed balls of a surface, largest first, those of a radius of at least ρ
-//! times the largest whose distance to all that are kept leaves the union no smoother than asked for. His balls are
-//! circumspheres of Delaunay tetrahedra; ours touch the surface at points spread over it and are shrunk until nothing
-//! else of the surface is in them (Ma, Bae and Choi 2012, The Visual Computer 28). Both sets are samples of the medial
-//! axis. The largest is brought to its place by ascent on the distance to the surface.
+//! Taghavi (2011) takes the maximal inscribed balls of a surface, largest first. He keeps a ball if its radius is at
+//! least ρ times the largest radius and if its distance to all kept balls leaves the union no smoother than required.
+//! His balls are circumspheres of Delaunay tetrahedra. Here the balls touch the surface at points distributed over it
+//! and are shrunk until no other part of the surface is inside them (Ma, Bae and Choi 2012, The Visual Computer 28).
+//! Both sets are samples of the medial axis. The largest ball is moved to its place by ascent on the distance to the
+//! surface.
 //!
 //! Smoothness is the angle φ at which two balls meet: with θ the angle between their radii at the common circle, φ =
-//! 180° - θ and `d² = r₁² + r₂² + 2 r₁ r₂ cos φ`. Balls that touch have 0°, equal ones at φ = 110° are 1.147 r apart. A
-//! larger φ lets them stand closer.
+//! 180° - θ and `d² = r₁² + r₂² + 2 r₁ r₂ cos φ`. Touching balls have 0°; equal balls at φ = 110° are 1.147 r apart. A
+//! larger φ allows them to be closer.
 
 use super::super::clump::Pebble;
 use super::super::shape::Mesh;
@@ -19,21 +20,21 @@ use std::f64::consts::PI;
 
 /// Points of the surface at which balls are grown.
 const POINTS: usize = 1500;
-/// A ball whose radius changes by less than this share is at rest.
+/// A ball has converged if its radius changes by less than this share.
 const AT_REST: f64 = 1e-6;
-/// Balls that hang together by less than this share of the smaller radius hang apart.
+/// Balls that overlap by less than this share of the smaller radius count as not connected.
 const HOLD: f64 = 0.05;
-/// How the rule is relaxed until there are enough pebbles: steps, and what each does to ratio and angle.
+/// Relaxation of the rule until there are enough pebbles: number of steps, and change of ratio and angle per step.
 const STEPS: usize = 40;
 const NARROWER: f64 = 0.95;
 const CLOSER: f64 = 2.0 * PI / 180.0;
-/// Balls closer than this angle say all the same thing.
+/// Balls closer than this angle are practically the same.
 const CLOSEST: f64 = 165.0 * PI / 180.0;
 
 /// The rule of bubble-pack.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rule {
-    /// Fewest and most pebbles.
+    /// Smallest and largest number of pebbles.
     pub pebbles: [usize; 2],
     /// Smallest pebble over largest pebble, above 0 to 1.
     pub ratio: f64,
@@ -45,17 +46,18 @@ pub struct Rule {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bubbles {
     pub pebbles: Vec<Pebble>,
-    /// The ratio and the angle that gave so many: those of the rule, or relaxed step by step where these gave too few.
+    /// The ratio and the angle that gave this number: the values of the rule, or relaxed values if the rule gave too
+    /// few pebbles.
     pub ratio: f64,
     pub distance: f64,
-    /// Pebbles by the rule as it stands, before the fewest and the most were looked at.
+    /// Number of pebbles by the rule alone, before the limits on the number are applied.
     pub by_rule: usize,
 }
 
 impl Bubbles {
-    /// Fills a closed surface. More pebbles than the most are cut off, smallest first. Where the rule gives fewer than
-    /// the fewest, its ratio and angle are relaxed together until there are enough; a surface that is all but a ball
-    /// has fewer all the same.
+    /// Fills a closed surface. Pebbles above the largest number are cut off, smallest first. If the rule gives fewer
+    /// pebbles than the smallest number, ratio and angle are relaxed together until there are enough. A surface that is
+    /// nearly a ball may still have fewer.
     pub fn fill(surface: &Mesh, rule: &Rule) -> Self {
         let balls = maximal_balls(surface);
         let [fewest, most] = rule.pebbles;
@@ -78,12 +80,12 @@ impl Bubbles {
     }
 }
 
-/// Balls, largest first, that the rule lets stand together, and that hang together.
+/// Balls, largest first, that the rule allows together, and that are connected.
 fn keep(balls: &[Pebble], ratio: f64, distance: f64, enough: usize) -> Vec<Pebble> {
     let Some(largest) = balls.first() else { return Vec::new() };
     let mut kept = vec![*largest];
     let candidates: Vec<&Pebble> = balls.iter().take_while(|b| b.radius >= ratio * largest.radius).collect();
-    // what hangs on nothing yet may hang on what comes later
+    // a ball without connection may be connected to a later ball
     loop {
         let before = kept.len();
         for ball in &candidates {
@@ -102,7 +104,7 @@ fn hang_together(a: &Pebble, b: &Pebble) -> bool {
     (a.centre - b.centre).norm() <= a.radius + b.radius - HOLD * a.radius.min(b.radius)
 }
 
-/// φ of two balls, rad: 0 where they touch or are apart, π where one touches the other from inside or lies in it.
+/// φ of two balls, rad: 0 if they touch or are apart, π if one is inside the other.
 fn smoothness(a: &Pebble, b: &Pebble) -> f64 {
     let square = (a.centre - b.centre).norm_squared();
     let cosine = (square - a.radius.powi(2) - b.radius.powi(2)) / (2.0 * a.radius * b.radius);
@@ -111,7 +113,7 @@ fn smoothness(a: &Pebble, b: &Pebble) -> f64 {
 
 /// Maximal inscribed balls of a surface, largest first.
 fn maximal_balls(surface: &Mesh) -> Vec<Pebble> {
-    // no ball inside is wider than the surface
+    // no ball inside is larger than the surface
     let [low, high] = surface.bounds();
     let widest = 0.5 * (high - low).min();
     let grow = |point: &SurfacePoint| shrunk(surface, &point.at, &-point.normal, widest);
@@ -124,8 +126,8 @@ fn maximal_balls(surface: &Mesh) -> Vec<Pebble> {
     balls
 }
 
-/// The largest ball that touches the surface from inside at a point: while something of the surface is in it, it is
-/// made to touch that. A ball that touches q as well has the radius |q - p|²/2n·(q - p).
+/// The largest ball that touches the surface from inside at a point. While another part of the surface is inside the
+/// ball, the ball is shrunk until it touches that part. A ball that also touches q has the radius |q - p|²/2n·(q - p).
 fn shrunk(surface: &Mesh, point: &Vector3<f64>, inward: &Vector3<f64>, start: f64) -> Option<Pebble> {
     let mut radius = start;
     loop {
@@ -144,8 +146,8 @@ fn shrunk(surface: &Mesh, point: &Vector3<f64>, inward: &Vector3<f64>, start: f6
     }
 }
 
-/// A ball moved to where the nearest surface is as far as it can be: steps along the axes and the diagonals, halved
-/// where none goes up.
+/// A ball moved to the place where the nearest surface is as far away as possible: steps along the axes and the
+/// diagonals, halved if no step increases the distance.
 fn ascended(surface: &Mesh, ball: &Pebble) -> Pebble {
     let mut best = *ball;
     let mut step = 0.25 * ball.radius;

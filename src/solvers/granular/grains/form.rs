@@ -1,20 +1,20 @@
-//! What the form of a grain is called: its lengths, and the indices made of them.
+//! The form of a grain: its lengths, and the indices computed from them.
 //!
-//! L, I and S are the sides of the smallest box round the grain (Blott and Pye 2008, Sedimentology 55(1)). Flatness is
+//! L, I and S are the sides of the smallest box around the grain (Blott and Pye 2008, Sedimentology 55(1)). Flatness is
 //! S/I and elongation I/L (Zingg 1935), both 1 for a cube and a ball and smaller for plates and needles. Sphericity is
-//! the surface of the ball of the same volume over the grain's own (Wadell 1932).
+//! the surface of the ball of the same volume divided by the surface of the grain (Wadell 1932).
 
 use super::super::shape::Mesh;
 use super::random::Random;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 
-/// Frames in which the box is measured before the best of them are turned further.
+/// Frames in which the box is measured before the best frames are rotated further.
 const FRAMES: usize = 300;
-/// Frames that are turned further, and the step at which that ends, rad.
+/// Frames that are rotated further, and the step at which the search ends, rad.
 const TURNED: usize = 6;
 const LAST_STEP: f64 = 1e-5;
-/// Turns that are tried before the step is halved.
+/// Number of rotations tried before the step is halved.
 const TRIES: usize = 9;
 
 /// Form of a grain.
@@ -63,7 +63,7 @@ pub fn extent(points: &[Vector3<f64>], along: &Vector3<f64>) -> f64 {
     high - low
 }
 
-/// The box of the least volume round a body.
+/// The box of the smallest volume around a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Box {
     /// Ascending, m.
@@ -73,8 +73,8 @@ pub struct Box {
 }
 
 impl Box {
-    /// The box round a body that is known by its extent (m) along every unit vector: the best of many frames, turned until no
-    /// small turn makes the volume less. The same for the same body.
+    /// The box around a body given by its extent (m) along every unit vector: the best of many frames, rotated until no
+    /// small rotation reduces the volume. The result is always the same for the same body.
     pub fn round(extent: impl Fn(&Vector3<f64>) -> f64) -> Self {
         let volume = |frame: &UnitQuaternion<f64>| axes(frame).iter().map(&extent).product::<f64>();
         let mut random = Random::new(0, 0);
@@ -110,8 +110,8 @@ fn axes(frame: &UnitQuaternion<f64>) -> [Vector3<f64>; 3] {
     [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| frame * axis)
 }
 
-/// Volume (m³), centroid (m) and second moments `∫ x xᵀ dV` about the centroid (m⁵) of what a closed surface encloses:
-/// sums of tetrahedra with a tip at the first corner.
+/// Volume (m³), centroid (m) and second moments `∫ x xᵀ dV` about the centroid (m⁵) of the body inside a closed
+/// surface: sums over tetrahedra with a vertex at the first corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solid {
     pub volume: f64,

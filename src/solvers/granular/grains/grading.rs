@@ -1,30 +1,29 @@
-//! Sizes of grains from a sieve curve: how many of each size a wanted solid volume holds.
+//! Grain sizes from a sieve curve: the number of grains of each size in a required solid volume.
 //!
-//! A curve says how much of the mass is finer than a size; grains are drawn by number. With u the share of the mass,
+//! A curve gives the share of the mass finer than a size; grains are drawn by number. With u the share of the mass,
 //! d(u) the size and v(d) = π d³/6 the volume of a grain, a unit of solid volume holds
 //!
 //! ```text
 //! n(u) = ∫₀ᵘ du' / v(d(u'))
 //! ```
 //!
-//! grains finer than d(u). A volume V has N = V n(1) of them, and the k-th is drawn from the middle half of the k-th of
-//! N equal strata of number. So each size has as many grains as it can have whole ones: the curve that is reached
-//! differs from the one that is asked for by about half of the largest grain's share of the mass, which is the least
-//! that whole grains can do. Sizes drawn without strata differ by the root of the grains.
+//! grains finer than d(u). A volume V has N = V n(1) grains, and the k-th grain is drawn from the middle half of the
+//! k-th of N equal strata by number. So each size has as many whole grains as possible: the resulting curve differs
+//! from the required curve by about half of the mass share of the largest grain, the smallest difference that whole
+//! grains allow. Sizes drawn without strata differ by the root of the number of grains.
 //!
-//! Every class follows its own closed form: between two sieves u is straight over ln d, so that n is an exponential of
-//! ln d.
+//! Every class has its own closed form: between two sieves u is linear in ln d, so that n is an exponential of ln d.
 
 use super::Random;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::fmt;
 
-/// More grains than this make no bed that anybody runs.
+/// Largest number of grains; larger beds cannot be run in practice.
 const MOST_GRAINS: f64 = 2e7;
 
-/// Share of the mass that is modelled, by size: from 0 at the finest grain to 1 at the coarsest, straight over the
-/// logarithm of the size in between. Two points of one size are a jump: many grains of that size.
+/// Share of the modelled mass by size: from 0 at the finest grain to 1 at the coarsest, linear in the logarithm of the
+/// size in between. Two points of equal size are a jump: many grains of this size.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
     /// Size, m, and share of the modelled mass that is finer.
@@ -33,18 +32,18 @@ pub struct Curve {
     modelled: f64,
 }
 
-/// Why points are no curve, or a curve gives no sample.
+/// Why points do not form a curve, or a curve gives no sample.
 #[derive(Debug, Clone, PartialEq)]
 pub enum GradingError {
-    /// A size (m) that is no number above 0.
+    /// A size (m) that is not a finite number above 0.
     Size { size: f64 },
     /// Sizes or shares that do not ascend, from this point on.
     Falls { point: usize },
     /// All points have the same share: there is no mass between them.
     Empty,
-    /// A solid volume (m³) that is no number above 0.
+    /// A solid volume (m³) that is not a finite number above 0.
     Volume { volume: f64 },
-    /// Less than one grain of the mean size.
+    /// The volume holds less than one grain of the mean size.
     NoGrain { volume: f64, mean: f64 },
     /// More grains than can be modelled.
     TooMany { grains: f64, finest: f64 },
@@ -53,15 +52,15 @@ pub enum GradingError {
 /// Grains of a curve.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
-    /// Diameters of the spheres of equal volume, m, in an order by chance: the first thousand follow the curve as well.
+    /// Diameters of the spheres of equal volume, m, in random order: the first thousand follow the curve as well.
     pub sizes: Vec<f64>,
-    /// What was asked for.
+    /// The required curve.
     pub curve: Curve,
-    /// Solid volume of all grains, m³: within half a mean grain of what was asked for.
+    /// Solid volume of all grains, m³: within half a mean grain of the required volume.
     pub volume: f64,
 }
 
-/// The mass between two sieves, as asked and as reached.
+/// The mass between two sieves, required and reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Class {
     /// Finest and coarsest size, m.
@@ -73,13 +72,13 @@ pub struct Class {
 }
 
 impl Curve {
-    /// Whether it has the points of a curve: one that was read from a file may have lost them.
+    /// Whether it has the points of a curve; points may be missing in a curve read from a file.
     pub(in super::super) fn is_whole(&self) -> bool {
         self.points.len() >= 2
     }
 
-    /// A curve of points (size in m, share of the mass that passes): sizes and shares ascend, and may stand still. What
-    /// lies below the first and above the last point is not modelled.
+    /// A curve through points (size in m, share of the mass that passes). Sizes and shares ascend; equal values are
+    /// allowed. Grains below the first and above the last point are not modelled.
     pub fn new(points: &[[f64; 2]]) -> Result<Self, GradingError> {
         for (point, [size, share]) in points.iter().enumerate() {
             if !(*size > 0.0 && size.is_finite()) {
@@ -115,7 +114,7 @@ impl Curve {
         &self.points
     }
 
-    /// Share of the whole mass that is modelled: the rest is cut off.
+    /// Share of the whole mass that is modelled; the rest is cut off.
     pub fn modelled(&self) -> f64 {
         self.modelled
     }
@@ -125,7 +124,7 @@ impl Curve {
         [self.points[0][0], self.points[self.points.len() - 1][0]]
     }
 
-    /// Share of the modelled mass in grains finer than a size, m; at a jump what it begins with.
+    /// Share of the modelled mass in grains finer than a size, m; at a jump, the value below the jump.
     pub fn below(&self, size: f64) -> f64 {
         let after = self.points.partition_point(|p| p[0] < size);
         match (after.checked_sub(1).map(|i| self.points[i]), self.points.get(after)) {
@@ -140,27 +139,27 @@ impl Curve {
         1.0 / self.classes().map(|class| class.number()).sum::<f64>()
     }
 
-    /// Mean size by surface (Sauter), m: as much surface to its volume as all grains have to theirs.
+    /// Mean size by surface (Sauter), m: the size with the same surface per volume as all grains together.
     pub fn surface_mean(&self) -> f64 {
         let [surface, volume] = [2.0, 3.0].map(|power| self.classes().map(|class| class.moment(power)).sum::<f64>());
         volume / surface
     }
 
-    /// Share of space that frictionless spheres of this curve fill, packed densely by chance (Desmond and Weeks 2014, eq. 3): by
-    /// the mean, the scatter and the skewness of their sizes by number.
+    /// Solid share of a dense random packing of frictionless spheres of this curve (Desmond and Weeks 2014, eq. 3):
+    /// from mean, scatter and skewness of the sizes by number.
     pub fn solid_share(&self) -> f64 {
         let moment = |power: f64| self.classes().map(|class| class.moment(power)).sum::<f64>();
         let number = moment(0.0);
         let [mean, second, third] = [1.0, 2.0, 3.0].map(|power| moment(power) / number);
         let variance = (second - mean * mean).max(0.0);
         let scatter = variance.sqrt() / mean;
-        // third central moment over variance, over the mean: skewness times the scatter
+        // third central moment divided by variance and mean: skewness times scatter
         let skewed =
             if scatter > 1e-6 { (third - 3.0 * mean * variance - mean.powi(3)) / (variance * mean) } else { 0.0 };
         0.634 + 0.0658 * scatter + 0.0857 * skewed * scatter
     }
 
-    /// Whole grains whose volumes sum to `volume` (m³), the same ones for the same seed.
+    /// Whole grains whose volumes sum to `volume` (m³); the same seed gives the same grains.
     pub fn sample(&self, volume: f64, seed: u64) -> Result<Sample, GradingError> {
         if !(volume > 0.0 && volume.is_finite()) {
             return Err(GradingError::Volume { volume });
@@ -175,7 +174,7 @@ impl Curve {
         }
         let mut random = Random::new(seed, SIZES);
         let mut classes = self.classes().peekable();
-        // grains finer than the class that is being filled, in a unit of solid volume
+        // number of grains finer than the present class, in a unit of solid volume
         let mut finer = 0.0;
         let mut sizes = Vec::with_capacity(count as usize);
         for k in 0..count as usize {
@@ -190,7 +189,7 @@ impl Curve {
         Ok(Sample { sizes, curve: self.clone(), volume })
     }
 
-    /// Pieces of the curve with mass in them, from the finest.
+    /// Pieces of the curve with a mass above 0, finest first.
     fn classes(&self) -> impl Iterator<Item = Piece> {
         let piece = |pair: &[[f64; 2]]| Piece {
             finest: pair[0][0],
@@ -201,14 +200,14 @@ impl Curve {
     }
 }
 
-/// Which numbers by chance are those of sizes.
+/// Number of the random stream for sizes.
 const SIZES: u64 = 1;
 
 /// A part of the curve between two points.
 struct Piece {
     /// m.
     finest: f64,
-    /// ln(coarsest / finest); 0 in a jump.
+    /// ln(coarsest / finest); 0 for a jump.
     widths: f64,
     /// Share of the modelled mass.
     mass: f64,
@@ -220,14 +219,15 @@ impl Piece {
         self.moment(0.0)
     }
 
-    /// Sum of d^p over these grains: with w the width, f the finest size and v its volume, m f^p / v ∫₀¹ exp((p - 3) w s) ds.
+    /// Sum of d^p over these grains: with w the width, f the finest size and v its volume, m f^p / v ∫₀¹ exp((p - 3) w
+    /// s) ds.
     fn moment(&self, power: f64) -> f64 {
         let w = (3.0 - power) * self.widths;
         let mean = if w > 0.0 { -(-w).exp_m1() / w } else { 1.0 };
         self.mass / ball(self.finest) * self.finest.powf(power) * mean
     }
 
-    /// Size (m) of the grain up to which there are `number` in this class: the inverse of the same integral.
+    /// Size (m) up to which there are `number` grains in this class: the inverse of the same integral.
     fn size(&self, number: f64) -> f64 {
         let w = 3.0 * self.widths;
         let part = number * ball(self.finest) / self.mass;
@@ -242,8 +242,7 @@ impl Sample {
         self.sizes.iter().filter(|d| **d < size).map(|d| ball(*d)).sum::<f64>() / self.volume
     }
 
-    /// Largest distance between the curve that was asked for and the one that is reached, as a share of the mass (after
-    /// Kolmogorov).
+    /// Largest difference between the required and the reached curve, as a share of the mass (after Kolmogorov).
     pub fn error(&self) -> f64 {
         let mut sizes = self.sizes.clone();
         sizes.sort_unstable_by(f64::total_cmp);
@@ -257,7 +256,7 @@ impl Sample {
         error
     }
 
-    /// Classes between the points of the curve. A class of some mass and no grain is too narrow for the volume.
+    /// Classes between the points of the curve. A class with mass but without a grain is too narrow for the volume.
     pub fn classes(&self) -> Vec<Class> {
         let points = &self.curve.points;
         let class = |pair: &[[f64; 2]]| {
@@ -275,7 +274,7 @@ impl Sample {
     }
 }
 
-/// Volume of a ball, m³, by its diameter, m.
+/// Volume of a ball, m³, from its diameter, m.
 fn ball(diameter: f64) -> f64 {
     PI / 6.0 * diameter.powi(3)
 }
@@ -283,18 +282,24 @@ fn ball(diameter: f64) -> f64 {
 impl fmt::Display for GradingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            GradingError::Size { size } => write!(f, "expected a size of grains above 0 m, found {size} m"),
+            GradingError::Size { size } => write!(f, "expected a grain size above 0 m, found {size} m"),
             GradingError::Falls { point } => {
-                write!(f, "expected sizes and shares from 0 to 1 that ascend, found one that does not at point {point}")
+                write!(f, "sizes and shares (from 0 to 1) must ascend, but they do not ascend at point {point}")
             }
-            GradingError::Empty => write!(f, "the curve holds no mass: its first and its last share are the same"),
+            GradingError::Empty => {
+                write!(f, "the grading curve holds no mass because its first and last shares are equal")
+            }
             GradingError::Volume { volume } => write!(f, "expected a solid volume above 0 m3, found {volume} m3"),
             GradingError::NoGrain { volume, mean } => {
-                write!(f, "{:.3e} m3 hold no grain of this grading, whose mean grain has {:.3e} m3", volume, mean)
+                write!(
+                    f,
+                    "a volume of {:.3e} m3 is too small for this grading; its mean grain has {:.3e} m3",
+                    volume, mean
+                )
             }
             GradingError::TooMany { grains, finest } => write!(
                 f,
-                "the grading has {grains:.1e} grains in this volume; cut it below a size above {:.3} mm",
+                "the grading has {grains:.1e} grains in this volume, too many; remove the sizes below a limit above {:.3} mm",
                 1e3 * finest
             ),
         }

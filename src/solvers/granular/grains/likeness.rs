@@ -1,4 +1,4 @@
-//! How unlike its surface a clump is, of equal volume and about the same centroid, as grains of a bed are.
+//! Difference between a clump and its surface, with equal volumes and centroids, as for the grains of a bed.
 
 use super::super::clump::{Pebble, Template};
 use super::super::shape::Mesh;
@@ -7,27 +7,29 @@ use super::points::{height, on_facets, outside};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
 
-/// Points in the box round both, for volumes: to 0.01 of the surface's.
+/// Number of points in the box around both, for volumes with an error of 0.01 of the volume of the surface.
 const POINTS: usize = 50_000;
 /// Points on a surface.
 const ON_SURFACE: usize = 3000;
 
-/// What a clump gets wrong of a surface; 0 in all four for one that is the surface.
+/// Differences between a clump and a surface; all four are 0 if they are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Misfit {
-    /// Volume that is in one of the two only, over the volume of the surface: half of it is missing, half too much.
+    /// Volume inside only one of the two, divided by the volume of the surface: half of it is missing, half is
+    /// additional.
     pub volume: f64,
-    /// Distance of the surfaces, averaged over both, over the diameter of the ball of equal volume. Inside a clump a
-    /// point is as far from the surface as it lies below its deepest pebble's, which is a lower bound.
+    /// Distance between the surfaces, mean over both, divided by the diameter of the ball of equal volume. For a point
+    /// inside a clump the depth below the surface of its deepest pebble is used, which is a lower bound.
     pub mean_distance: f64,
-    /// The largest one (after Hausdorff).
+    /// The largest distance (after Hausdorff).
     pub largest_distance: f64,
-    /// Frobenius norm of the difference of the inertia tensors over that of the surface: axes count as well as values.
+    /// Frobenius norm of the difference of the inertia tensors divided by the norm of the tensor of the surface: axes
+    /// count as well as values.
     pub inertia: f64,
 }
 
 impl Misfit {
-    /// What a clump gets wrong that stands in the frame in which its pebbles were given.
+    /// Differences of a clump that lies in the frame of its given pebbles.
     pub fn between(surface: &Mesh, clump: &Template) -> Self {
         let solid = Solid::inside(surface.vertices(), surface.triangles());
         let scale = (solid.volume / clump.volume).cbrt();
@@ -49,7 +51,7 @@ impl Misfit {
     }
 }
 
-/// Volume that is in one of the two only, m³, by points that fill the box evenly (Roberts 2018, the R3 sequence).
+/// Volume inside only one of the two, m³, by points that fill the box evenly (Roberts 2018, the R3 sequence).
 fn difference(surface: &Mesh, pebbles: &[Pebble]) -> f64 {
     let [mut low, mut high] = surface.bounds();
     for pebble in pebbles {
@@ -81,7 +83,7 @@ fn distances(surface: &Mesh, pebbles: &[Pebble]) -> (f64, f64) {
     for point in on_facets(surface, ON_SURFACE) {
         add(height(pebbles, &point.at).abs(), point.area);
     }
-    // what sticks out most is a corner
+    // the points that stick out most are corners
     surface.vertices().iter().for_each(|corner| add(height(pebbles, corner).abs(), 0.0));
     (sum / area, largest)
 }

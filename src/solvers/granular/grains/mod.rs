@@ -1,8 +1,7 @@
-//! Grains before they are packed: their sizes, their shapes, and clumps of pebbles in place of the shapes.
+//! Grains before packing: their sizes, their shapes, and clumps of pebbles that replace the shapes.
 //!
-//! [`Curve::sample`] gives the sizes of the grains of a solid volume, [`ClumpShape::templates`] the clumps that they
-//! are copies of, and [`grains`] puts the two together. A clump of a template goes into a bed as the template scaled by
-//! the grain's size.
+//! [`Curve::sample`] gives the sizes of the grains of a solid volume, [`ClumpShape::templates`] the clumps of which
+//! they are copies, and [`grains`] combines both. A clump in a bed is a template scaled by the size of the grain.
 //!
 //! ```
 //! use trackbed::solvers::granular::grains::*;

@@ -1,11 +1,11 @@
-//! Points that stand for a surface, each for a part of it: of a union of balls, or of a mesh.
+//! Points that represent a surface, each a part of it: the surface of a union of balls, or of a mesh.
 
 use super::super::clump::Pebble;
 use super::super::shape::Mesh;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// A point of a surface that stands for a part of it.
+/// A point that represents a part of a surface.
 #[derive(Debug, Clone, Copy)]
 pub struct SurfacePoint {
     /// m.
@@ -16,7 +16,8 @@ pub struct SurfacePoint {
     pub area: f64,
 }
 
-/// Points of the surface of a union of balls, `count` on each ball less those that others hide (a spiral of equal areas).
+/// Points on the surface of a union of balls, `count` on each ball except points inside other balls (a spiral of equal
+/// areas).
 pub fn outside(pebbles: &[Pebble], count: usize) -> Vec<SurfacePoint> {
     let golden = PI * (3.0 - 5.0f64.sqrt());
     let on = |(number, pebble): (usize, &Pebble)| {
@@ -34,7 +35,8 @@ pub fn outside(pebbles: &[Pebble], count: usize) -> Vec<SurfacePoint> {
     pebbles.iter().enumerate().flat_map(on).collect()
 }
 
-/// About so many points of a mesh: facets larger than their share are divided, of those smaller every so manyth is taken.
+/// About `count` points of a mesh: facets larger than the share of a point are divided; smaller facets are sampled at
+/// equal intervals of area.
 pub fn on_facets(surface: &Mesh, count: usize) -> Vec<SurfacePoint> {
     let share = surface.area() / count as f64;
     let (mut points, mut waiting) = (Vec::new(), 0.5 * share);
@@ -64,7 +66,7 @@ pub fn on_facets(surface: &Mesh, count: usize) -> Vec<SurfacePoint> {
     points
 }
 
-/// Height of a point over the surface of a union of balls, m: exact outside, a lower bound of the depth inside.
+/// Height of a point above the surface of a union of balls, m: exact outside, a lower bound of the depth inside.
 pub fn height(pebbles: &[Pebble], point: &Vector3<f64>) -> f64 {
     pebbles.iter().map(|p| (point - p.centre).norm() - p.radius).fold(f64::INFINITY, f64::min)
 }

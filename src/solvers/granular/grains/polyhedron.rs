@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 
-/// A place this far outside a plane, in units of the body, is still on it.
+/// A point at most this far outside a plane, in units of the body, counts as on the plane.
 const ON: f64 = 1e-12;
 
 /// Points x with `normal · x <= height`.
@@ -14,8 +14,8 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// The plane of the points that a stretched body has where this one has its own: x becomes `stretch` x. The stretch
-    /// is given as the transpose of its inverse, which is what normals follow.
+    /// The plane of the stretched body: x becomes `stretch` x. The argument is the inverse transpose of `stretch`,
+    /// which transforms normals.
     pub fn stretched(&self, inverse_transposed: &Matrix3<f64>) -> Self {
         let normal = inverse_transposed * self.normal;
         let length = normal.norm();
@@ -23,16 +23,15 @@ impl Plane {
     }
 }
 
-/// A corner of a body, where three planes meet.
+/// A corner of a body, at which three planes meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
     pub place: Vector3<f64>,
-    /// So that their normals turn to the left seen from outside.
+    /// In an order such that their normals turn to the left seen from outside.
     pub planes: [usize; 3],
 }
 
-/// Corners of the body between the planes: every three of them meet somewhere, and where no other one is in the way
-/// there is a corner.
+/// Corners of the body between the planes: the common points of three planes that lie inside all other planes.
 pub fn corners(planes: &[Plane]) -> Vec<Corner> {
     let mut found = Vec::new();
     for a in 0..planes.len() {
@@ -58,7 +57,7 @@ fn corner(planes: &[Plane], [a, b, c]: [usize; 3]) -> Option<Corner> {
     inside.then_some(Corner { place, planes: if turn > 0.0 { [a, b, c] } else { [a, c, b] } })
 }
 
-/// Radius of the largest ball between the planes: it touches four of them. 0 where there is none.
+/// Radius of the largest ball between the planes: it touches four planes. 0 if there is none.
 pub fn inscribed_radius(planes: &[Plane]) -> f64 {
     let n = planes.len();
     let mut largest = 0.0f64;
@@ -85,7 +84,7 @@ pub fn inscribed_radius(planes: &[Plane]) -> f64 {
 }
 
 /// The surface of all points within `radius` of the body: flat faces, parts of cylinders along its edges and of balls
-/// round its corners, each arc in so many `segments`. Vertices and triangles, outward.
+/// at its corners, with `segments` segments per arc. Vertices and triangles, outward.
 pub fn rounded(
     planes: &[Plane],
     corners: &[Corner],
@@ -112,7 +111,7 @@ pub fn rounded(
         for k in 0..face.len() {
             let (from, to) = (face[k], face[(k + 1) % face.len()]);
             let shared = corners[from].planes.iter().find(|p| **p != number && corners[to].planes.contains(p));
-            // every edge once, from the face of the lower number: it has its neighbour to the right
+            // every edge once, from the face with the lower number; its neighbour is on the right
             let Some(&other) = shared.filter(|other| **other > number) else { continue };
             for step in 0..segments {
                 let [a, b] = [from, to].map(|corner| patch.on(corners, corner, number, other, step));
@@ -124,7 +123,7 @@ pub fn rounded(
     (vertices, triangles)
 }
 
-/// Corners of a face, to the left seen from outside.
+/// Corners of a face, counterclockwise seen from outside.
 fn face(plane: &Plane, number: usize, corners: &[Corner]) -> Vec<usize> {
     let mut found: Vec<usize> = (0..corners.len()).filter(|c| corners[*c].planes.contains(&number)).collect();
     let middle = found.iter().map(|c| corners[*c].place).sum::<Vector3<f64>>() / found.len().max(1) as f64;
@@ -135,7 +134,7 @@ fn face(plane: &Plane, number: usize, corners: &[Corner]) -> Vec<usize> {
     found
 }
 
-/// The part of a ball between three normals, as a triangle of triangles; its vertices are known by their weights.
+/// The part of a ball between three normals, as a triangle of triangles; its vertices are given by their weights.
 #[derive(Clone, Copy)]
 struct Patch {
     segments: usize,
@@ -151,7 +150,7 @@ impl Patch {
         (self.segments + 1) * (self.segments + 2) / 2
     }
 
-    /// The vertex of these weights of the second and the third normal.
+    /// The vertex with these weights of the second and the third normal.
     fn vertex(self, corner: usize, j: usize, k: usize) -> u32 {
         let before = j * (self.segments + 1) - (j * j - j) / 2;
         (corner * self.size() + before + k) as u32
@@ -171,7 +170,7 @@ impl Patch {
         triangles
     }
 
-    /// The vertex so many steps from one normal of the corner to another one.
+    /// The vertex `step` steps from one normal of the corner towards another normal.
     fn on(self, corners: &[Corner], corner: usize, from: usize, to: usize, step: usize) -> u32 {
         let weight = |plane: usize| {
             let own = |p: usize, weight: usize| if p == plane { weight } else { 0 };

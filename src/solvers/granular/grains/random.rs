@@ -1,14 +1,14 @@
-//! Numbers by chance that are the same in every run (Steele, Lea and Flood 2014, `splitmix64`).
+//! Random numbers that are the same in every run (Steele, Lea and Flood 2014, `splitmix64`).
 
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-/// A stream of numbers, known by its seed alone.
+/// A stream of random numbers, determined by its seed alone.
 #[derive(Debug, Clone)]
 pub struct Random(u64);
 
 impl Random {
-    /// The stream `number` of a seed: other streams of the same seed have nothing in common with it.
+    /// Stream `number` of a seed, independent of the other streams of the same seed.
     pub fn new(seed: u64, number: u64) -> Self {
         Self(mixed(mixed(seed) ^ number))
     }
@@ -19,24 +19,24 @@ impl Random {
         out
     }
 
-    /// Even, from 0 to below 1.
+    /// Uniform from 0 to below 1.
     pub fn share(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Even between two numbers.
+    /// Uniform between two numbers.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.share()
     }
 
-    /// Even on the unit sphere: the height is even (Archimedes).
+    /// Uniform on the unit sphere: the height is uniform (Archimedes).
     pub fn direction(&mut self) -> Vector3<f64> {
         let (z, turn) = (self.between(-1.0, 1.0), TAU * self.share());
         let across = (1.0 - z * z).sqrt();
         Vector3::new(across * turn.cos(), across * turn.sin(), z)
     }
 
-    /// Puts things into an order by chance (Fisher and Yates).
+    /// Puts items into random order (Fisher and Yates).
     pub fn shuffle<T>(&mut self, things: &mut [T]) {
         for last in (1..things.len()).rev() {
             let other = (self.share() * (last + 1) as f64) as usize;

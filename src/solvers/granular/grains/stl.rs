@@ -1,7 +1,7 @@
 //! Surfaces from the bytes of an STL file, binary or text, and back.
 //!
-//! STL knows neither units nor shared corners: corners nearer than a millionth of the largest extent become one.
-//! Normals in the file are not read; the order of corners says which side is outside.
+//! STL has neither units nor shared corners: corners closer than a millionth of the largest extent become one corner.
+//! Normals in the file are not read; the order of the corners defines the outside.
 
 use super::super::shape::{Mesh, MeshError, MeshKind};
 use nalgebra::Vector3;
@@ -9,28 +9,28 @@ use std::collections::HashMap;
 use std::fmt;
 use std::ops::Range;
 
-/// Corners this near to each other are one, as a part of the largest extent.
+/// Corners at most this far apart, as a share of the largest extent, become one.
 const SAME: f64 = 1e-6;
 /// Bytes before the facets of a binary file, and bytes of a facet.
 const HEAD: usize = 84;
 const FACET: usize = 50;
 
-/// Why bytes are no surface of a grain.
+/// Why bytes do not describe the surface of a grain.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StlError {
-    /// Neither text that begins with `solid` nor as long as a binary file says that it is.
+    /// The file neither begins with `solid` nor has the length of a binary file with its number of facets.
     NotStl,
-    /// A binary file that ends before its facets do.
+    /// A binary file with fewer facets than its header gives.
     Cut { facets: usize, found: usize },
-    /// A text that does not go on as it must.
+    /// A text with an unexpected word.
     Text { expected: &'static str, found: String, bytes: Range<usize> },
-    /// Facets that are no closed body.
+    /// Facets that do not form a closed body.
     Mesh(MeshError),
-    /// Bodies that do not hang together; a grain is one.
+    /// Several separate bodies; a grain must be one body.
     Bodies { count: usize },
 }
 
-/// The closed body that an STL file describes, in the file's own unit.
+/// The closed body that an STL file describes, in the unit of the file.
 pub fn read(bytes: &[u8]) -> Result<Mesh, StlError> {
     let corners = match binary(bytes) {
         Some(corners) => corners,
@@ -58,7 +58,7 @@ pub fn write(mesh: &Mesh) -> Vec<u8> {
     bytes
 }
 
-/// Corners of a file that is as long as its number of facets says.
+/// Corners of a file whose length matches its number of facets.
 fn binary(bytes: &[u8]) -> Option<Vec<[Vector3<f64>; 3]>> {
     let facets = facets(bytes)?;
     if bytes.len() != HEAD + FACET * facets {
@@ -69,7 +69,7 @@ fn binary(bytes: &[u8]) -> Option<Vec<[Vector3<f64>; 3]>> {
     Some(bytes[HEAD..].chunks_exact(FACET).map(|facet| [0, 1, 2].map(|k| corner(facet, k))).collect())
 }
 
-/// Number of facets that a binary file says to have.
+/// Number of facets in the header of a binary file.
 fn facets(bytes: &[u8]) -> Option<usize> {
     let count = bytes.get(HEAD - 4..HEAD)?;
     Some(u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize)
@@ -146,13 +146,13 @@ impl<'a> Words<'a> {
         Ok(place)
     }
 
-    /// Names stand there.
+    /// The rest of the line is a name.
     fn rest_of_line(&mut self) {
         self.at = self.text[self.at..].find('\n').map_or(self.text.len(), |end| self.at + end);
     }
 }
 
-/// Corners that are one get one number; triangles that this draws together are left out.
+/// Corners at the same place get one number; triangles that collapse by this are left out.
 fn welded(corners: &[[Vector3<f64>; 3]]) -> (Vec<Vector3<f64>>, Vec<[u32; 3]>) {
     let all = || corners.iter().flatten();
     let low = all().fold(Vector3::repeat(f64::INFINITY), |low, v| low.inf(v));
@@ -208,9 +208,11 @@ fn bodies(mesh: &Mesh) -> usize {
 impl fmt::Display for StlError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            StlError::NotStl => write!(f, "it is no STL file: neither text that begins with `solid` nor binary"),
+            StlError::NotStl => {
+                write!(f, "it is not an STL file: it is neither text that begins with `solid` nor binary")
+            }
             StlError::Cut { facets, found } => {
-                write!(f, "it is cut off: a binary file of {facets} triangles that holds {found}")
+                write!(f, "it is cut off: the header gives {facets} triangles, the file holds {found}")
             }
             StlError::Text { expected, found, .. } if found.is_empty() => {
                 write!(f, "expected `{expected}`, found the end of the file")
@@ -218,7 +220,7 @@ impl fmt::Display for StlError {
             StlError::Text { expected, found, .. } => write!(f, "expected `{expected}`, found `{found}`"),
             StlError::Mesh(error) => error.fmt(f),
             StlError::Bodies { count } => {
-                write!(f, "it holds {count} bodies that do not hang together, a grain is one")
+                write!(f, "it holds {count} separate bodies; a grain must be one body")
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Templates of clumps from surfaces, and grains that are copies of them.
+//! Templates of clumps from surfaces, and grains as copies of the templates.
 
 use super::super::clump::{Template, TemplateError};
 use super::super::shape::Mesh;
@@ -12,23 +12,23 @@ use std::sync::Arc;
 /// A grain of a bed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grain {
-    /// Which of the templates it is a copy of.
+    /// Index of its template.
     pub template: usize,
-    /// Diameter of the ball of its volume, m: by this its template is scaled.
+    /// Diameter of the ball of its volume, m: the scale of its template.
     pub size: f64,
 }
 
-/// The grains of a sample: every template as often as any other, by chance.
+/// The grains of a sample: every template equally often, in random order.
 pub fn grains(sample: &Sample, templates: usize, seed: u64) -> Vec<Grain> {
     let mut template: Vec<usize> = (0..sample.sizes.len()).map(|k| k % templates.max(1)).collect();
     Random::new(seed, TEMPLATES).shuffle(&mut template);
     sample.sizes.iter().zip(template).map(|(size, template)| Grain { template, size: *size }).collect()
 }
 
-/// Which numbers by chance are those of the choice of templates.
+/// Number of the random stream for the choice of templates.
 const TEMPLATES: u64 = 2;
 
-/// The shape of grains: surfaces, and how pebbles fill them.
+/// The shape of grains: surfaces, and the rule for filling them with pebbles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClumpShape {
     pub surfaces: Surfaces,
@@ -38,13 +38,13 @@ pub struct ClumpShape {
 /// Closed surfaces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Surfaces {
-    /// So many angular grains of equal indices.
+    /// `count` angular grains with equal indices.
     Angular { indices: Angular, count: usize },
     /// Scans, of any size.
     Meshes(Vec<Arc<Mesh>>),
 }
 
-/// A template beside the surface that it was made for.
+/// A template, and the surface for which it was made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fitted {
     pub surface: Arc<Mesh>,
@@ -57,9 +57,9 @@ pub struct Fitted {
 #[derive(Debug, Clone, PartialEq)]
 pub enum TemplatesError {
     Surface(AngularError),
-    /// Pebbles that make no clump.
+    /// Pebbles that do not form a clump.
     Clump(TemplateError),
-    /// A surface into which no ball fits, or fewer balls than asked for: it is all but a ball itself.
+    /// Fewer pebbles fit into a surface than required: the surface is nearly a ball.
     TooFew {
         surface: usize,
         found: usize,
@@ -68,8 +68,8 @@ pub enum TemplatesError {
 }
 
 impl Default for ClumpShape {
-    /// Clumps of two or three pebbles (Ahmadi et al. 2026, 2.1) in five angular grains. With these indices the paper's
-    /// rule itself gives two or three in four surfaces of five, and one in the fifth.
+    /// Clumps of two or three pebbles (Ahmadi et al. 2026, 2.1) in five angular grains. With these indices the rule of
+    /// the paper gives two or three pebbles in four of five surfaces, and one in the fifth.
     fn default() -> Self {
         let indices = Angular { flatness: 0.7, elongation: 0.7, roundness: 0.15 };
         let rule = Rule { pebbles: [2, 3], ratio: 0.8, distance: 110.0 * PI / 180.0 };
@@ -78,12 +78,12 @@ impl Default for ClumpShape {
 }
 
 impl ClumpShape {
-    /// A template of each surface, of the volume of the ball of diameter 1.
+    /// A template for each surface, with the volume of the ball of diameter 1.
     pub fn templates(&self, seed: u64) -> Result<Vec<Template>, TemplatesError> {
         Ok(self.fitted(seed)?.into_iter().map(|fitted| fitted.template).collect())
     }
 
-    /// The same, each beside its surface.
+    /// The same templates, each with its surface.
     pub fn fitted(&self, seed: u64) -> Result<Vec<Fitted>, TemplatesError> {
         let surfaces = match &self.surfaces {
             Surfaces::Angular { indices, count } => {
@@ -93,7 +93,7 @@ impl ClumpShape {
             Surfaces::Meshes(meshes) => meshes.clone(),
         };
         let fitted = |(number, surface)| self.fit(number, surface);
-        // all of them before the first that fails is told: which one that is does not depend on the threads
+        // all surfaces are fitted before the first error is returned, so the error does not depend on the threads
         let fitted: Vec<Result<Fitted, TemplatesError>> = surfaces.into_par_iter().enumerate().map(fitted).collect();
         fitted.into_iter().collect()
     }
@@ -117,7 +117,7 @@ impl fmt::Display for TemplatesError {
             TemplatesError::Clump(error) => error.fmt(f),
             TemplatesError::TooFew { surface, found, fewest } => write!(
                 f,
-                "{found} pebbles fit into surface {surface} where {fewest} are asked for; it is all but a ball: ask for fewer"
+                "only {found} pebbles fit into surface {surface}, fewer than the {fewest} required, because it is nearly a ball: require fewer pebbles"
             ),
         }
     }

@@ -1,4 +1,4 @@
-//! What is wrong with a bed before its first step, all of it at once, each with numbers and a way out.
+//! Reports all problems of a bed before its first step at once, each with numbers and a remedy.
 
 use super::bed::Bed;
 use super::body::BodyId;
@@ -12,17 +12,17 @@ use super::vector::{Vec3, add, norm, scale, sub};
 use super::walls::WallId;
 use std::fmt;
 
-/// Something that a run should not start with.
+/// A problem with which a run should not start.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Finding {
-    /// Nothing that could move.
+    /// The bed has no body.
     Empty,
-    /// A law with a number that cannot be, and the surfaces that it is between.
+    /// A law with a number out of its range, and its two surfaces.
     ContactLaw {
         surfaces: [u16; 2],
         fault: LawError,
     },
-    /// A wall whose shape is none, or whose motion cannot be.
+    /// A wall with an invalid shape or motion.
     Shape {
         wall: WallId,
         fault: ShapeError,
@@ -31,13 +31,13 @@ pub enum Finding {
         wall: WallId,
         fault: MotionError,
     },
-    /// A body with a number that cannot be.
+    /// A body with a number out of its range.
     Body {
         body: BodyId,
         quantity: &'static str,
         value: f64,
     },
-    /// Pairs that overlap by more than is allowed, and the worst.
+    /// Pairs that overlap by more than the allowed share, and the worst pair.
     Overlaps {
         count: usize,
         body: BodyId,
@@ -46,27 +46,27 @@ pub enum Finding {
         overlap: f64,
         share: f64,
     },
-    /// Bodies whose pebbles have their centres in what is solid, and the first.
+    /// Bodies with a pebble centre inside a solid, and the first of them.
     Outside {
         wall: WallId,
         count: usize,
         body: BodyId,
         place: Vec3,
     },
-    /// A wall longer than half a period: contacts with its images are not seen.
+    /// A wall longer than half a period: contacts with its images are not found.
     WideWall {
         wall: WallId,
         axis: usize,
         extent: f64,
         period: f64,
     },
-    /// A plane that leans along a periodic direction does not meet itself there.
+    /// A plane that leans along a periodic direction: it is not continuous from period to period.
     LeaningPlane {
         wall: WallId,
         axis: usize,
         lean: f64,
     },
-    /// A grain that would meet itself, or one neighbour twice.
+    /// A grain that could touch its own image, or a neighbour twice.
     LargeGrain {
         body: BodyId,
         axis: usize,
@@ -84,23 +84,23 @@ pub enum Finding {
     NoStep,
 }
 
-/// The other of two that overlap.
+/// The second of two overlapping parties.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Other {
     Body(BodyId),
     Wall(WallId),
 }
 
-/// Greatest part of a periodic cell that a grain may take.
+/// Largest share of a periodic cell that a grain may take.
 const GRAIN: f64 = 1.0 / 3.0;
-/// Component of a unit normal that rounding may leave.
+/// Component of a unit normal that counts as rounding.
 const LEAN: f64 = 1e-9;
 
 impl<R: Real> Bed<R> {
-    /// Looks for mistakes: overlaps of more than `share` of the smaller radius, bodies in walls, walls and grains that do not
-    /// fit their periods, laws and numbers that cannot be, and a time step above the limit of the contacts.
+    /// Checks for overlaps of more than `share` of the smaller radius, bodies in walls, walls and grains that do not
+    /// fit their periods, laws and numbers out of range, and a time step above the limit of the contacts.
     ///
-    /// Where numbers themselves are wrong, only those are told: nothing else would mean much.
+    /// If numbers are out of range, only those are reported, because the other checks need valid numbers.
     pub fn inspect(&mut self, share: f64) -> Vec<Finding> {
         let mut found = Vec::new();
         if self.bodies.is_empty() {
@@ -180,7 +180,7 @@ impl<R: Real> Bed<R> {
         }
     }
 
-    /// Bodies with a pebble's centre in what is solid.
+    /// Bodies with a pebble centre inside a solid.
     fn inspect_outside(&self, found: &mut Vec<Finding>) {
         for (number, wall) in self.walls.iter().enumerate() {
             let mut inside: Vec<(u32, Vec3)> = Vec::new();
@@ -262,7 +262,7 @@ impl<R: Real> Bed<R> {
     }
 }
 
-/// What is wrong with a wall along a periodic axis.
+/// The problem of a wall along a periodic axis.
 fn period_of_wall(wall: WallId, shape: &super::walls::Wall, axis: usize, period: f64) -> Option<Finding> {
     match &shape.shape {
         Shape::Plane { normal } => {
@@ -310,32 +310,36 @@ impl fmt::Display for Finding {
             Finding::Shape { wall, fault } => write!(f, "wall {}: {fault}", wall.0),
             Finding::WallMotion { wall, fault } => write!(f, "wall {}: {fault}", wall.0),
             Finding::Body { body, quantity, value } => {
-                write!(f, "body {}: its {quantity} is {value}; give a finite one, above 0 for mass and radius", body.0)
+                write!(
+                    f,
+                    "body {}: its {quantity} is {value}; give a finite value, above 0 for mass and radius",
+                    body.0
+                )
             }
             Finding::Overlaps { count, body, other, place, overlap, share } => write!(
                 f,
-                "{count} contacts overlap by more than they should, most of all body {} and {other} at {}: {overlap:.3e} m, {share:.3} of \
+                "{count} contacts overlap too much; the largest overlap is between body {} and {other} at {}: {overlap:.3e} m, {share:.3} of \
                  the smaller radius; move them apart, or let radii grow under damping",
                 body.0,
                 At(*place)
             ),
             Finding::Outside { wall, count, body, place } => write!(
                 f,
-                "{count} bodies have a centre in the solid of wall {}, the first is body {} at {}; move them out, or turn the wall's normals round",
+                "{count} bodies have their centre inside wall {}; the first is body {} at {}; move them out, or reverse the normals of the wall",
                 wall.0,
                 body.0,
                 At(*place)
             ),
             Finding::WideWall { wall, axis, extent, period } => write!(
                 f,
-                "wall {} is {extent:.4} m long along {}, more than half of the period of {period:.4} m, and its images are not \
-                 seen; use a plane, or cut it into shorter walls",
+                "wall {} is {extent:.4} m long along {}, more than half of the period of {period:.4} m, but contacts with its periodic \
+                 images are not found; use a plane, or cut it into shorter walls",
                 wall.0, AXES[*axis]
             ),
             Finding::LeaningPlane { wall, axis, lean } => write!(
                 f,
-                "plane {} leans along the periodic {}, by {lean:.3e} of its normal, and does not meet itself there; turn the normal \
-                 across, or leave it open",
+                "plane {} leans along the periodic {}, by {lean:.3e} of its normal, so it is not continuous from period to period; turn \
+                 the normal perpendicular to it, or make that direction not periodic",
                 wall.0, AXES[*axis]
             ),
             Finding::LargeGrain { body, axis, diameter, cell } => write!(
@@ -347,7 +351,7 @@ impl fmt::Display for Finding {
             Finding::Step { dt, limit, body } => {
                 write!(f, "the time step of {dt:.3e} s is above the limit of {limit:.3e} s of the contacts")?;
                 if let Some((body, place)) = body {
-                    write!(f, ", which body {} at {} sets", body.0, At(*place))?;
+                    write!(f, ", set by body {} at {}", body.0, At(*place))?;
                 }
                 write!(f, "; take {:.3e} s, or scale masses", 0.9 * limit)
             }

@@ -1,4 +1,4 @@
-//! Every mistake that is looked for, made once.
+//! Every problem that is checked for occurs once.
 
 use super::{Finding, Other};
 use crate::solvers::granular::shape::{Mesh, MeshKind, Shape};
@@ -59,7 +59,7 @@ fn overlaps_are_counted_and_the_worst_is_named() {
     let [finding @ Finding::Overlaps { count: 3, share, overlap, .. }] = &found[..] else { panic!("{found:?}") };
     assert!((share - 1.9).abs() < 1e-9 && (overlap - 0.019).abs() < 1e-12, "across the period");
     says(finding, &["3 contacts", "body 0", "body 5", "1.900e-2 m", "1.900 of", "move them apart"]);
-    // a wall counts too
+    // walls are checked, too
     let mut bed = self::bed(Domain::open());
     bed.add_plane([0.0, 0.0, 0.004], [0.0, 0.0, 1.0], 1);
     bed.add_sphere(&ball(0.0, 0.0, 0.01));

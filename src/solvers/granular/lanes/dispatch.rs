@@ -1,4 +1,4 @@
-//! The two precisions, and the lanes that each takes on this machine.
+//! The two precisions, and the lanes of each on this machine.
 
 use super::plain::Plain;
 #[cfg(target_arch = "x86_64")]
@@ -67,7 +67,7 @@ impl Real for f64 {
     fn dispatch<W: Work<f64>>(work: W) -> W::Output {
         #[cfg(target_arch = "x86_64")]
         if let Some(lanes) = x86::Middle::detect() {
-            // the reference is plain code; only its fused products want the instructions
+            // the reference is plain code; only its fused products need the instructions
             return lanes.enter(work, Plain::<f64, 4>::new());
         }
         work.run(Plain::<f64, 4>::new())

@@ -1,5 +1,5 @@
-//! Numbers, vectors and matrices in double precision, one a lane. Products and sums are rounded one by one, as those of
-//! [`vector`](super::super::vector) are: a body moves by the same bits in whatever lane it is.
+//! Numbers, vectors and matrices in double precision, one per lane. Products and sums are rounded one by one, as in
+//! [`vector`](super::super::vector): a body gets the same bits in any lane.
 
 use super::{Fine, Lanes, Num, Vector};
 use std::ops::{Add, Neg, Sub};
@@ -36,13 +36,13 @@ impl<L: Lanes> Fine<L> {
         Fine { lanes: self.lanes, value: self.lanes.fine_abs(self.value) }
     }
 
-    /// `self` where `a < b`, `other` elsewhere.
+    /// `self` if `a < b`, otherwise `other`, lane by lane.
     #[inline(always)]
     pub fn where_less(self, a: Self, b: Self, other: Self) -> Self {
         Fine { lanes: self.lanes, value: self.lanes.fine_where_less(a.value, b.value, self.value, other.value) }
     }
 
-    /// Whether any lane is less than that of `other`.
+    /// Whether any lane is less than the same lane of `other`.
     #[inline(always)]
     pub fn any_less(self, other: Self) -> bool {
         self.lanes.fine_any_less(self.value, other.value)
@@ -111,7 +111,7 @@ impl<L: Lanes> FineVector<L> {
         FineVector([a[0] * b[0], a[1] * b[1], a[2] * b[2]])
     }
 
-    /// `self` where `a < b`, `other` elsewhere.
+    /// `self` if `a < b`, otherwise `other`, lane by lane.
     #[inline(always)]
     pub fn where_less(self, a: Fine<L>, b: Fine<L>, other: Self) -> Self {
         let ([x, y, z], o) = (self.0, other.0);

@@ -1,8 +1,8 @@
 //! Numbers in lanes: the same arithmetic on many contacts at once.
 //!
-//! The physics of a contact is written once, over [`Num`] and [`Fine`]; a [`Lanes`] says how wide they are and with which
-//! instructions they work. Only operations that IEEE 754 rounds correctly are used (`+ - * /`, square root, fused
-//! multiply-add), so every kind of lane gives the same bits.
+//! The physics of a contact is written once, over [`Num`] and [`Fine`]; a [`Lanes`] defines the number of lanes and
+//! their instructions. Only operations that IEEE 754 rounds correctly are used (`+ - * /`, square root, fused
+//! multiply-add), so all kinds of lanes give the same bits.
 
 // loops run over the lanes of several arrays at once
 #![allow(clippy::needless_range_loop)]
@@ -24,7 +24,7 @@ use std::ops::{Add, Div, Index, Mul, Neg, Sub};
 /// Contacts that are stored together; a multiple of every width.
 pub const BLOCK: usize = 16;
 
-/// A precision that forces, velocities and histories of contacts may have. Positions and sums are always `f64`.
+/// A precision for forces, velocities and contact histories. Positions and sums are always `f64`.
 pub trait Real:
     Pod
     + Send
@@ -41,7 +41,7 @@ pub trait Real:
     + Div<Output = Self>
     + 'static
 {
-    /// What a contact reads of a pebble.
+    /// The data of a pebble that a contact reads.
     type Record: Record<Self>;
     /// The name of the precision, for tables.
     const NAME: &'static str;
@@ -55,13 +55,13 @@ pub trait Real:
     fn dispatch<W: Work<Self>>(work: W) -> W::Output;
 }
 
-/// Something done in lanes.
+/// Work done in lanes.
 pub trait Work<R: Real> {
     type Output;
     fn run<L: Lanes<Real = R>>(self, lanes: L) -> Self::Output;
 }
 
-/// Columns of some pebbles' records, a pebble a lane.
+/// Columns of the records of some pebbles, one pebble per lane.
 pub struct Columns<L: Lanes> {
     pub position: [Fine<L>; 3],
     pub radius: Fine<L>,
@@ -70,7 +70,7 @@ pub struct Columns<L: Lanes> {
     pub mass: Num<L>,
 }
 
-/// Eight numbers of one contact, in one line of the cache.
+/// Eight numbers of one contact, in one cache line.
 #[repr(C, align(32))]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Row<R>(pub [R; 8]);
@@ -87,7 +87,7 @@ impl<R> Index<usize> for Row<R> {
 pub trait Lanes: Copy {
     const WIDTH: usize;
     type Real: Real;
-    /// A number of the contact's precision in each lane.
+    /// A number in the precision of the contact in each lane.
     type Num: Copy;
     /// An `f64` in each lane.
     type Fine: Copy;
@@ -106,7 +106,7 @@ pub trait Lanes: Copy {
     fn min(self, a: Self::Num, b: Self::Num) -> Self::Num;
     fn max(self, a: Self::Num, b: Self::Num) -> Self::Num;
     fn less(self, a: Self::Num, b: Self::Num) -> Self::Mask;
-    /// `yes` where the mask holds, `no` elsewhere.
+    /// `yes` if the mask is set, otherwise `no`, lane by lane.
     fn select(self, mask: Self::Mask, yes: Self::Num, no: Self::Num) -> Self::Num;
     fn any(self, mask: Self::Mask) -> bool;
 
@@ -120,7 +120,7 @@ pub trait Lanes: Copy {
     fn fine_div(self, a: Self::Fine, b: Self::Fine) -> Self::Fine;
     fn fine_sqrt(self, a: Self::Fine) -> Self::Fine;
     fn fine_abs(self, a: Self::Fine) -> Self::Fine;
-    /// `yes` where `a < b`, `no` elsewhere.
+    /// `yes` if `a < b`, otherwise `no`, lane by lane.
     fn fine_where_less(self, a: Self::Fine, b: Self::Fine, yes: Self::Fine, no: Self::Fine) -> Self::Fine;
     fn fine_any_less(self, a: Self::Fine, b: Self::Fine) -> bool;
     fn narrow(self, a: Self::Fine) -> Self::Num;
@@ -130,11 +130,11 @@ pub trait Lanes: Copy {
     fn gather(self, records: &[<Self::Real as Real>::Record], index: &[u32]) -> Columns<Self>;
     /// `factors row + sums` for the eight numbers of one row.
     fn add_row(self, row: &Row<Self::Real>, factors: [f64; 8], sums: [f64; 8]) -> [f64; 8];
-    /// Eight numbers a lane, written lane by lane.
+    /// Eight numbers per lane, written lane by lane.
     fn scatter(self, columns: [Num<Self>; 8], to: &mut [Row<Self::Real>]);
 }
 
-/// A number of the contact's precision in each lane.
+/// A number in the precision of the contact in each lane.
 #[derive(Clone, Copy)]
 pub struct Num<L: Lanes> {
     pub lanes: L,
@@ -225,7 +225,7 @@ impl<L: Lanes> Num<L> {
         self.lanes.less(self.value, other.value)
     }
 
-    /// `self` where the mask holds, `other` elsewhere.
+    /// `self` if the mask is set, otherwise `other`, lane by lane.
     #[inline(always)]
     pub fn where_or(self, mask: L::Mask, other: Self) -> Self {
         Num { lanes: self.lanes, value: self.lanes.select(mask, self.value, other.value) }
@@ -268,7 +268,7 @@ impl<L: Lanes> Vector<L> {
         Vector([a[0].fma(factor, b[0]), a[1].fma(factor, b[1]), a[2].fma(factor, b[2])])
     }
 
-    /// `self` where the mask holds, 0 elsewhere.
+    /// `self` if the mask is set, otherwise 0, lane by lane.
     #[inline(always)]
     pub fn only(self, mask: L::Mask) -> Self {
         let [x, y, z] = self.0;

@@ -1,4 +1,4 @@
-//! Lanes as plain arrays: the reference of every other kind, and what machines without wide instructions use.
+//! Lanes as plain arrays: the reference for all other kinds, used on machines without wide instructions.
 
 use super::{Columns, Fine, Lanes, Num, Real, Row, Vector};
 use crate::solvers::granular::record::Record;

@@ -1,7 +1,8 @@
 //! Sixteen lanes of AVX-512 and eight of AVX2, in mixed precision.
 //!
-//! Records come in by whole cache lines and are transposed in registers: a gather instruction would fetch each number
-//! of a line by itself. No closures here: their bodies would lose the instructions that their surroundings have.
+//! Records are read in whole cache lines and transposed in registers: a gather instruction would fetch each number of a
+//! line separately. No closures here: the compiler would not use the instructions of the calling function in their
+//! bodies.
 
 use super::{Columns, Fine, Lanes, Num, Row, Vector, Work};
 use crate::solvers::granular::record::Compact;
@@ -10,8 +11,8 @@ use pulp::NullaryFnOnce;
 use pulp::x86::{V3, V4};
 use std::arch::x86_64::{__m128, __m256, __m256d, __m512, __m512d, __m512i};
 
-/// Work with the lanes that it is to be done in. A closure would not do: the compiler may leave its body outside the
-/// function that has the instructions.
+/// Work with its lanes. A closure would not do: the compiler may compile its body outside the function that has the
+/// instructions.
 struct Entered<W, L> {
     work: W,
     lanes: L,

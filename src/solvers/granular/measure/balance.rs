@@ -1,11 +1,11 @@
-//! What acts on each body, from contacts and weight: the paper's Eq. 2, and how far a bed is from rest.
+//! Forces on each body from contacts and weight (Eq. 2 of the paper), and the force out of balance of a bed.
 
 use crate::solvers::granular::bed::Bed;
 use crate::solvers::granular::lanes::Real;
 use crate::solvers::granular::snapshot::Snapshot;
 use crate::solvers::granular::vector::{Vec3, add, norm, scale};
 
-/// Forces on a body at an instant. Local damping is no force of a contact and is not in them.
+/// Forces on a body at an instant. Local damping is not a contact force and is not included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceBalance {
     /// Sum of contact forces and weight, N.
@@ -14,7 +14,7 @@ pub struct ForceBalance {
     pub acting: f64,
 }
 
-/// Forces on all bodies in the order of making. The snapshot is one of this bed, of now.
+/// Forces on all bodies in the order of creation. `snapshot` must be a snapshot of the present state of this bed.
 pub fn balance<R: Real>(bed: &Bed<R>, snapshot: &Snapshot) -> Vec<ForceBalance> {
     let gravity = bed.gravity.value_at(bed.time);
     let at_weight = |mass| ForceBalance { net: scale(gravity, mass), acting: norm(scale(gravity, mass)) };
@@ -30,8 +30,8 @@ pub fn balance<R: Real>(bed: &Bed<R>, snapshot: &Snapshot) -> Vec<ForceBalance> 
     all
 }
 
-/// Mean of what is out of balance on a body over the mean of the sum of what acts on it: PFC's average ratio. 0 in perfect
-/// rest, 1 in free fall. Bodies that are held do not count.
+/// Mean force out of balance on a body divided by the mean sum of the acting forces: PFC's average ratio. 0 at perfect
+/// rest, 1 in free fall. Held bodies do not count.
 pub fn unbalance<R: Real>(bed: &Bed<R>, snapshot: &Snapshot) -> f64 {
     let mut forces = balance(bed, snapshot);
     let mut moves = bed.index.iter().map(|&place| bed.bodies[place as usize].inverse_mass > 0.0);

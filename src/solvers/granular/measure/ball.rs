@@ -1,8 +1,9 @@
 //! Exact volumes of a ball inside another ball and inside a box.
 //!
-//! A box is the alternating sum of the corners {x > a, y > b, z > c} at its vertices. The part of a ball in a corner follows from
-//! Gauss's theorem: the area of its round face, from the angles and the curvature of its rims (Gauss and Bonnet), and those of
-//! its flat faces. A circle x = a has geodesic curvature times length `a` times its angle. Errors are of the order of 1e-15 of the ball, however small the part.
+//! A box is the alternating sum of the corners {x > a, y > b, z > c} at its vertices. The part of a ball in a corner
+//! follows from Gauss's theorem: the area of its round face, from the angles and the curvature of its rims (Gauss and
+//! Bonnet), and the areas of its flat faces. A circle x = a has a geodesic curvature times length of `a` times its
+//! angle. Errors are about 1e-15 of the ball, also for small parts.
 
 use std::f64::consts::PI;
 
@@ -11,7 +12,7 @@ pub fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     (x * x + y * y + z * z).sqrt()
 }
 
-/// Volume that two balls share: two caps, or the smaller ball.
+/// Common volume of two balls: two caps, or the smaller ball.
 pub fn ball_in_ball(a: f64, b: f64, distance: f64) -> f64 {
     let (small, sum) = (a.min(b), a + b);
     if distance >= sum {
@@ -38,7 +39,7 @@ pub fn unit_ball_in_box(lower: &[f64; 3], upper: &[f64; 3]) -> f64 {
         let sign = if lower_sides & 1 == 1 { 1.0 } else { -1.0 };
         total += sign * corner(at(0), at(1), at(2));
     }
-    if total < 0.0 { 0.0 } else { total } // by rounding; what is no number stays none
+    if total < 0.0 { 0.0 } else { total } // negative by rounding; a value that is not a number stays
 }
 
 /// Volume of the unit ball in {x > a, y > b, z > c}.
@@ -77,7 +78,7 @@ fn edge(a: f64, b: f64) -> f64 {
         0.0
     } else {
         let ab = reach(a, b);
-        // Half the angle of the circle x = a in {y > b}, and the other way round.
+        // Half the angle of the circle x = a in {y > b}, and half the angle of the circle y = b in {x > a}.
         let arcs = [ab.atan2(b), ab.atan2(a)];
         let round = 2.0 * (PI - ab.atan2(-a * b) - a * arcs[0] - b * arcs[1]);
         let flats = a * ((1.0 - a * a) * arcs[0] - b * ab) + b * ((1.0 - b * b) * arcs[1] - a * ab);
@@ -91,8 +92,8 @@ fn face(a: f64) -> f64 {
     PI * (1.0 - a) * (1.0 - a) * (2.0 + a) / 3.0
 }
 
-/// Third coordinate of the point of the unit sphere at x = a, y = b. All angles are taken from this one number: near 0, where
-/// rounding makes most of it, what it does to them cancels.
+/// Third coordinate of the point of the unit sphere at x = a, y = b. All angles use this one number: near 0 its
+/// rounding error is large, but the effect on the angles cancels.
 fn reach(a: f64, b: f64) -> f64 {
     (1.0 - (a * a + b * b)).max(0.0).sqrt()
 }

@@ -1,7 +1,8 @@
-//! Volume of a union of balls inside a region, by the same integral as a clump's mass properties.
+//! Volume of a union of balls inside a region, by the same integral as the mass properties of a clump.
 //!
-//! The surface of what lies inside is made of the patches of the balls that lie inside, and of the parts of the border that lie in
-//! the union. On a sphere every face of a box, the border of a ball and every other pebble cut off a cap.
+//! The surface of the part inside consists of the patches of the balls inside the region, and of the parts of the
+//! border inside the union. On a sphere, every face of a box, the border of a ball and every other pebble cut off a
+//! cap.
 
 use super::region::{Ball, Region, RegionShape};
 use crate::solvers::granular::union::{Arcs, Cap, Patch, Pebble, Trig};
@@ -11,8 +12,8 @@ use nalgebra::{Vector2, Vector3};
 const TOLERANCE: [f64; 1] = [1e-13];
 
 impl Region {
-    /// Volume of a clump inside the region, m³: what several pebbles hold counts once. `volume` (m³) is that of the clump. The
-    /// error is below 1e-10 of the cube of the largest radius.
+    /// Volume of a clump inside the region, m³; a part inside several pebbles counts once. `volume` (m³) is the volume
+    /// of the clump. The error is below 1e-10 of the cube of the largest radius.
     pub fn share_of_clump(&self, pebbles: &[Ball], volume: f64) -> f64 {
         match pebbles {
             [] => 0.0,
@@ -26,7 +27,8 @@ impl Region {
 
 /// Volume of a union of balls inside a region, m³.
 pub(super) fn union_in(shape: &RegionShape, balls: &[Ball]) -> f64 {
-    // Places about the first pebble, in units of the largest: fluxes are then no differences of large numbers.
+    // Positions relative to the first pebble, in units of the largest: fluxes are then not differences of large
+    // numbers.
     let unit = balls.iter().map(|b| b.1).fold(0.0, f64::max);
     let origin = balls[0].0;
     let place = |c: &[f64; 3]| Vector3::from_fn(|k, _| (c[k] - origin[k]) / unit);
@@ -37,7 +39,7 @@ pub(super) fn union_in(shape: &RegionShape, balls: &[Ball]) -> f64 {
             union_in_ball(&pebbles, &Pebble { centre: place(centre), radius: radius / unit })
         }
     };
-    let share = if share < 0.0 { 0.0 } else { share }; // by rounding; what is no number stays none
+    let share = if share < 0.0 { 0.0 } else { share }; // negative by rounding; a value that is not a number stays
     share * unit * unit * unit
 }
 
@@ -76,7 +78,7 @@ fn union_in_box(pebbles: &[Pebble], lower: &Vector3<f64>, upper: &Vector3<f64>) 
 /// Centre and radius of a circle.
 type Disc = (Vector2<f64>, f64);
 
-/// Where the balls cross a plane across x.
+/// Circles in which the balls cross a plane across x.
 fn discs(pebbles: &[Pebble], x: f64) -> Vec<Disc> {
     let disc = |p: &Pebble| {
         let square = (p.radius - (x - p.centre.x)) * (p.radius + (x - p.centre.x));
@@ -85,7 +87,8 @@ fn discs(pebbles: &[Pebble], x: f64) -> Vec<Disc> {
     pebbles.iter().filter_map(disc).collect()
 }
 
-/// Area of a union of discs in a rectangle, by Green's theorem: `∮ x dy` along open arcs and along the sides x = constant.
+/// Area of a union of discs in a rectangle, by Green's theorem: `∮ x dy` along open arcs and along the sides x =
+/// constant.
 fn union_in_rectangle(discs: &[Disc], lower: &Vector2<f64>, upper: &Vector2<f64>) -> f64 {
     let mut arcs = Arcs::default();
     let mut total = 0.0;
@@ -116,7 +119,7 @@ fn union_in_rectangle(discs: &[Disc], lower: &Vector2<f64>, upper: &Vector2<f64>
     total + side(upper.x) - side(lower.x)
 }
 
-/// Length of a line across x, between two places, that lies in a union of discs.
+/// Length of a line across x, between two points, inside a union of discs.
 fn covered_length(discs: &[Disc], x: f64, from: f64, to: f64) -> f64 {
     let chord = |(centre, radius): &Disc| {
         let square = (radius - (x - centre.x)) * (radius + (x - centre.x));

@@ -3,22 +3,23 @@
 use super::Region;
 use nalgebra::{Matrix3, Vector3};
 
-/// How many others a body touches.
+/// Coordination: number of neighbours of the bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordination {
-    /// Neighbours a body, over all bodies.
+    /// Mean number of neighbours of all bodies.
     pub mean: f64,
-    /// Neighbours a body, over bodies that are no rattlers: the mechanical coordination number of Thornton (2000),
-    /// Géotechnique 50, 43-53, `(2 C - N₁)/(N - N₀ - N₁)`. 0 where all are rattlers.
+    /// Mean number of neighbours of bodies that are not rattlers: the mechanical coordination number of Thornton
+    /// (2000), Géotechnique 50, 43-53, `(2 C - N₁)/(N - N₀ - N₁)`. 0 if all are rattlers.
     pub without_rattlers: f64,
     /// Bodies with fewer than two neighbours.
     pub rattlers: usize,
-    /// Pairs of bodies in contact, each once; of some bodies only, half of the touches that they have.
+    /// Number of pairs of bodies in contact, each counted once; for a part of the bodies, half of their contacts.
     pub pairs: usize,
 }
 
-/// How many others each of `bodies` bodies touches, whose touching pairs are given, in any order and as often as their pebbles
-/// touch. A body is not its own neighbour, and neither is a wall: pairs that name a body beyond the last are left out.
+/// Number of neighbours of each of `bodies` bodies. `pairs` are the touching pairs, in any order; a pair may occur
+/// several times, once per pebble contact. A body is not its own neighbour. Walls do not count: pairs that name a body
+/// beyond the last are left out.
 pub fn neighbours(bodies: usize, pairs: &[(u32, u32)]) -> Vec<u32> {
     let inside = |(i, j): &(u32, u32)| i != j && (*i as usize) < bodies && (*j as usize) < bodies;
     let mut distinct: Vec<_> = pairs.iter().filter(|p| inside(p)).map(|(i, j)| (*i.min(j), *i.max(j))).collect();
@@ -32,13 +33,14 @@ pub fn neighbours(bodies: usize, pairs: &[(u32, u32)]) -> Vec<u32> {
     neighbours
 }
 
-/// Coordination of `bodies` bodies with these touching pairs, see [`neighbours`]. 0 where there are no bodies.
+/// Coordination of `bodies` bodies with these touching pairs, see [`neighbours`]. 0 if there are no bodies.
 pub fn coordination(bodies: usize, pairs: &[(u32, u32)]) -> Coordination {
     Coordination::from_neighbours(&neighbours(bodies, pairs))
 }
 
 impl Coordination {
-    /// Coordination of bodies that touch so many others: of all that there are, or of some of them, whose neighbours may be others.
+    /// Coordination of bodies from their numbers of neighbours, for all bodies or for a part, whose neighbours may be
+    /// outside the part.
     pub fn from_neighbours(neighbours: &[u32]) -> Coordination {
         let held: Vec<_> = neighbours.iter().filter(|n| **n >= 2).collect();
         let [all, links] = [neighbours.iter().sum::<u32>(), held.iter().copied().sum()];
@@ -56,17 +58,18 @@ impl Coordination {
 pub struct Contact {
     /// On body i, N.
     pub force: [f64; 3],
-    /// To the centroid of i from that of j, or from the contact point at a wall, m.
+    /// From the centroid of j, or from the contact point at a wall, to the centroid of i, m.
     pub branch: [f64; 3],
     /// m.
     pub point: [f64; 3],
 }
 
-/// Mean stress of a region, Pa, tension positive: `σ = -(1/V) Σ F ⊗ L` with F on body i and L from j to i, over the contacts whose
-/// point lies inside (Christoffersen, Mehrabadi, Nemat-Nasser 1981, J. Appl. Mech. 48, 339-344). Row: component of the force.
+/// Mean stress of a region, Pa, tension positive: `σ = -(1/V) Σ F ⊗ L` with F on body i and L from j to i, over the
+/// contacts whose point lies inside (Christoffersen, Mehrabadi, Nemat-Nasser 1981, J. Appl. Mech. 48, 339-344). Row:
+/// component of the force.
 ///
-/// It is exact for a region that holds whole bodies in equilibrium and the contacts between them; a border that cuts through bodies
-/// takes all or nothing of a contact.
+/// It is exact for a region that holds whole bodies in equilibrium and the contacts between them. At a border that cuts
+/// through bodies, a contact counts completely or not at all.
 pub fn stress(region: &Region, contacts: impl IntoIterator<Item = Contact>) -> Matrix3<f64> {
     let inside = contacts.into_iter().filter(|c| region.holds(&c.point));
     let sum: Matrix3<f64> = inside.map(|c| Vector3::from(c.force) * Vector3::from(c.branch).transpose()).sum();

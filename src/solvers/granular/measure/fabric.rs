@@ -1,7 +1,7 @@
-//! Which way contacts look: the fabric tensor of their normals, and roses.
+//! Directions of contacts: the fabric tensor of their normals, and roses.
 //!
-//! The tensor is that of Satake (1982, IUTAM Conference on Deformation and Failure of Granular Materials, Delft, 63-68),
-//! `F = (1/N) Σ n ⊗ n`, of trace 1. A normal and its opposite are one direction.
+//! The tensor is defined by Satake (1982, IUTAM Conference on Deformation and Failure of Granular Materials, Delft,
+//! 63-68), `F = (1/N) Σ n ⊗ n`, of trace 1. A normal and its opposite are the same direction.
 
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -11,11 +11,11 @@ const INCLINATIONS: usize = 9;
 /// Bins of half a turn in a vertical plane.
 const AZIMUTHS: usize = 18;
 
-/// How the normals of contacts are spread.
+/// Distribution of the normals of contacts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Fabric {
     pub contacts: usize,
-    /// Rows; a third of the unit matrix where no direction leads, nothing but 0 without contacts.
+    /// Rows; a third of the unit matrix without a preferred direction, 0 without contacts.
     pub tensor: [[f64; 3]; 3],
 }
 
@@ -31,8 +31,8 @@ impl Fabric {
         Fabric { contacts: contacts as usize, tensor: rows(&tensor) }
     }
 
-    /// `√(3/2 D : D)` of the deviator D: 0 where no direction leads, 1 where there is only one. Where two principal values
-    /// are equal it is the difference of the third from them.
+    /// `√(3/2 D : D)` of the deviator D: 0 without a preferred direction, 1 if there is only one direction. If two
+    /// principal values are equal it is the difference between them and the third value.
     pub fn deviator(&self) -> f64 {
         if self.contacts == 0 { 0.0 } else { equivalent(&self.tensor) }
     }
@@ -55,25 +55,26 @@ pub(super) fn rows(tensor: &Matrix3<f64>) -> [[f64; 3]; 3] {
     [0, 1, 2].map(|row| [0, 1, 2].map(|column| tensor[(row, column)]))
 }
 
-/// Densities of directions, each over that of directions without preference: 1 everywhere in an isotropic bed.
+/// Densities of directions, each divided by the isotropic density: 1 everywhere in an isotropic bed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Rose {
     /// By the angle from the vertical, 0 to 90 degrees in steps of 10.
     pub inclination: Vec<f64>,
-    /// By the angle from the horizontal of the projection on the vertical plane along x, 0 to 180 degrees in steps of 10.
+    /// By the angle from the horizontal of the projection on the vertical plane along x, 0 to 180 degrees in steps of
+    /// 10.
     pub along: Vec<f64>,
-    /// The same on the vertical plane along y.
+    /// The same for the vertical plane along y.
     pub across: Vec<f64>,
 }
 
 impl Rose {
-    /// Rose of unit normals, zero everywhere without any.
+    /// Rose of unit normals; zero everywhere without normals.
     pub fn from_normals(normals: impl IntoIterator<Item = [f64; 3]>) -> Rose {
         let mut inclination = vec![0.0; INCLINATIONS];
         let mut planes = [vec![0.0; AZIMUTHS], vec![0.0; AZIMUTHS]];
         for [x, y, z] in normals {
             let step = std::f64::consts::FRAC_PI_2 / INCLINATIONS as f64;
-            // the tangent keeps its digits where the cosine has lost them
+            // the tangent is accurate also if the cosine is not
             inclination[bin(x.hypot(y).atan2(z.abs()), step, INCLINATIONS)] += 1.0;
             for (plane, across) in planes.iter_mut().zip([x, y]) {
                 let step = std::f64::consts::PI / AZIMUTHS as f64;
@@ -91,7 +92,7 @@ fn bin(angle: f64, step: f64, count: usize) -> usize {
     ((angle / step) as usize).min(count - 1)
 }
 
-/// Counts as shares of their sum, over the shares that they would have.
+/// Counts as shares of their sum, divided by the isotropic shares.
 fn over(counts: Vec<f64>, isotropic: &[f64]) -> Vec<f64> {
     let all: f64 = counts.iter().sum();
     counts.iter().zip(isotropic).map(|(count, share)| if all > 0.0 { count / all / share } else { 0.0 }).collect()

@@ -1,18 +1,18 @@
-//! How forces are shared out among contacts.
+//! Distribution of forces over contacts.
 //!
-//! Normal forces over their mean: strong ones (above the mean) carry the load, weak ones hold them up (Radjai et al. 1998,
-//! Phys. Rev. Lett. 80, 61-64). Their tail falls as `exp(-β f)`.
+//! Normal forces are divided by their mean: strong forces (above the mean) carry the load, weak forces stabilise the
+//! strong contacts (Radjai et al. 1998, Phys. Rev. Lett. 80, 61-64). The tail of the distribution falls as `exp(-β f)`.
 
 use serde::{Deserialize, Serialize};
 
-/// Width of a bin, of the mean force.
+/// Width of a bin, as a share of the mean force.
 const BIN: f64 = 0.25;
-/// Bins, so that one great force does not make thousands.
+/// Number of bins, limited so that one large force does not create thousands.
 const BINS: usize = 80;
-/// Share of the friction that a contact may have to spare when it counts as sliding: forces are in single precision.
+/// A contact counts as sliding if at most this share of its friction is left: forces are in single precision.
 const SLIDES: f64 = 1e-4;
 
-/// A contact that pushes.
+/// A contact in compression.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactPush {
     /// N.
@@ -34,21 +34,21 @@ pub struct ForceSpread {
     pub largest: f64,
     /// Share of contacts with more than the mean.
     pub above: f64,
-    /// Share of all normal force that these carry.
+    /// Share of the total normal force carried by these contacts.
     pub carried: f64,
-    /// β of the tail `exp(-β f/mean)` above the mean, by maximum likelihood: one over the mean excess. 1 where all forces
-    /// are exponential. `None` with fewer than two forces there.
+    /// β of the tail `exp(-β f/mean)` above the mean, by maximum likelihood: one divided by the mean excess. 1 if all
+    /// forces are exponential. `None` with fewer than two forces above the mean.
     pub decay: Option<f64>,
-    /// Mean of shear force over what friction holds; `None` without friction.
+    /// Mean of shear force divided by the friction limit; `None` without friction.
     pub mobilised: Option<f64>,
-    /// Share of contacts at their friction; `None` without friction.
+    /// Share of contacts at the friction limit; `None` without friction.
     pub sliding: Option<f64>,
-    /// Force over the mean at the middle of each bin, and density there; beyond the last bin they are cut off.
+    /// Force divided by the mean at the middle of each bin, and density there; forces beyond the last bin are cut off.
     pub density: Vec<[f64; 2]>,
 }
 
 impl ForceSpread {
-    /// How the forces of contacts spread whose normal force pushes; the others are left out.
+    /// Distribution of the forces of contacts in compression; other contacts are left out.
     pub fn from_pushes(pushes: impl IntoIterator<Item = ContactPush>) -> ForceSpread {
         let pushes: Vec<ContactPush> = pushes.into_iter().filter(|push| push.normal > 0.0).collect();
         if pushes.is_empty() {

@@ -3,8 +3,8 @@
 use super::region::{Region, RegionShape};
 
 impl Region {
-    /// Share of the straight line between two points (m) that lies inside, 0 .. 1. Pieces of a space that is cut into boxes add
-    /// up to 1.
+    /// Share of the straight line between two points (m) inside the region, 0 .. 1. For a space divided into boxes the
+    /// shares add up to 1.
     pub fn share_of_line(&self, from: &[f64; 3], to: &[f64; 3]) -> f64 {
         let [start, end] = match &self.0 {
             RegionShape::Block { lower, upper } => within_block(lower, upper, from, to),
@@ -14,13 +14,13 @@ impl Region {
     }
 }
 
-/// From where to where along the line, 0 at `from` and 1 at `to`.
+/// Start and end of the part inside along the line, 0 at `from` and 1 at `to`.
 fn within_block(lower: &[f64; 3], upper: &[f64; 3], from: &[f64; 3], to: &[f64; 3]) -> [f64; 2] {
     let mut inside = [f64::NEG_INFINITY, f64::INFINITY];
     for k in 0..3 {
         let way = to[k] - from[k];
         if way == 0.0 {
-            // as `holds` has it: a line in a face lies in one of two boxes
+            // as in `holds`: a line in a face belongs to one of two boxes
             if !(lower[k] <= from[k] && from[k] < upper[k]) {
                 return [1.0, 0.0];
             }
@@ -32,7 +32,7 @@ fn within_block(lower: &[f64; 3], upper: &[f64; 3], from: &[f64; 3], to: &[f64; 
     inside
 }
 
-/// Where `|from + t (to - from) - centre| = radius`.
+/// Values of t at which `|from + t (to - from) - centre| = radius`.
 fn within_ball(centre: &[f64; 3], radius: f64, from: &[f64; 3], to: &[f64; 3]) -> [f64; 2] {
     let dot = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|k| a[k] * b[k]).sum::<f64>();
     let way: [f64; 3] = std::array::from_fn(|k| to[k] - from[k]);

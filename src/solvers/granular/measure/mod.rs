@@ -1,7 +1,7 @@
-//! What a bed shows: porosity, coordination, stress, fabric, forces, and how it moves.
+//! Measurements of a bed: porosity, coordination, stress, fabric, forces and motion.
 //!
-//! Most are functions of plain numbers: places (m) and radii (m) in, no state; in a periodic bed their caller gives the images
-//! that reach into the region. A [`Survey`] does that for a whole bed.
+//! Most are functions of plain numbers: positions (m) and radii (m), without state. In a periodic bed the caller passes
+//! the images that reach into the region. A [`Survey`] does this for a whole bed.
 
 mod balance;
 mod ball;

@@ -1,4 +1,4 @@
-//! Surveys of whole beds: lattices under their weight, beds that fall and turn, and a packed one under a plate.
+//! Surveys of whole beds: lattices under their own weight, beds that fall and rotate, and a packed bed under a plate.
 
 use super::*;
 use crate::solvers::granular::clump::Template;
@@ -114,7 +114,7 @@ fn a_lattice_carries_its_weight_slab_by_slab() {
     let inner = survey.slab([2.0 * RADIUS, 4.0 * RADIUS], plan).unwrap();
     assert!((inner.porosity - (1.0 - PI / 6.0)).abs() < 1e-6, "{}", inner.porosity);
     assert!((inner.fabric.deviator() - 1.0).abs() < 1e-9 || inner.fabric.deviator() < 1e-9, "{:?}", inner.fabric);
-    // a box of whole cells anywhere, over the border of the period and over several of them, shows the same as the slab
+    // a box of whole cells anywhere, also over one or several borders of the period, gives the same result as the slab
     for x in [[0.0, 0.24], [-0.07, 0.05], [0.4, 0.88], [-0.3, 0.18]] {
         let reading = survey.region(&block([x[0], -0.01, 0.1], [x[1], 0.23, 0.17]));
         let slab = survey.slab([0.1, 0.17], plan).unwrap();
@@ -148,10 +148,10 @@ fn rigid_motion_is_read_as_it_is() {
         bed.set_velocity(state.id, [0, 1, 2].map(|k| velocity[k] + turning[k]), spin);
     }
     let survey = survey(&mut bed);
-    // round the axis of rotation, turning cancels
+    // around the axis of rotation, the rotation cancels
     let whole = survey.region(&block([0.0; 3], [0.24; 3]));
     assert_eq!(whole.bodies, 64);
-    // two spheres: what turns them is their middle
+    // two spheres: their mean velocity is the velocity of their middle
     let two = survey.region(&block([0.0, 0.0, 0.0], [0.06, 0.06, 0.12]));
     assert_eq!(two.bodies, 2);
     let [x, y, z] = [0.03 - 0.12, 0.03 - 0.12, 0.06 - 0.12];
@@ -191,7 +191,7 @@ fn a_packed_bed_carries_its_plate_and_its_weight_at_every_level() {
             .map(|(state, forces)| (state.place[2], state.mass * GRAVITY, forces.net[2]))
             .collect();
         let slabs: Vec<[f64; 2]> = (1..8).map(|k| [0.02 * f64::from(k), 0.02 * f64::from(k + 1)]).collect();
-        // of what lies above, with what accelerates it and without
+        // the weight of everything above, with its acceleration and without
         worst = [1.0, 0.0].map(|moving| {
             let error = slabs.iter().map(|[low, high]| {
                 let part = |z: f64| ((z - low) / (high - low)).clamp(0.0, 1.0);
@@ -200,7 +200,7 @@ fn a_packed_bed_carries_its_plate_and_its_weight_at_every_level() {
             });
             error.fold(0.0, f64::max)
         });
-        // the slabs are the whole
+        // the slabs together are the whole
         let whole = survey.slab([0.02, 0.16], area).unwrap();
         let mean = |of: &dyn Fn(&Reading) -> f64| {
             slabs.iter().map(|slab| of(&survey.slab(*slab, area).unwrap())).sum::<f64>() / slabs.len() as f64
@@ -212,11 +212,11 @@ fn a_packed_bed_carries_its_plate_and_its_weight_at_every_level() {
         }
         let bodies: usize = slabs.iter().map(|slab| survey.slab(*slab, area).unwrap().bodies).sum();
         assert_eq!(bodies, whole.bodies);
-        // loaded without room to the side: between sliding and a fluid
+        // loaded without lateral movement: between sliding and a fluid
         let [along, across] = whole.horizontal();
         assert!((0.2..0.9).contains(&(0.5 * (along + across) / whole.vertical())), "{whole:?}");
     })
     .unwrap_or_else(|error| panic!("{error}"));
-    // the balance is exact; a plate that is at rest by its own measure leaves a hundredth
+    // the balance is exact; the tolerance of a plate at rest is a hundredth
     assert!(worst[0] < 1e-12 && worst[1] < 0.02, "{worst:?}");
 }

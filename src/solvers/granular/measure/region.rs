@@ -1,4 +1,4 @@
-//! Where one measures: a box or a sphere, and how much of a sphere lies in it.
+//! Measurement regions: a box or a sphere, and the part of a sphere inside.
 
 use super::ball;
 use std::f64::consts::PI;
@@ -17,13 +17,13 @@ pub(super) enum RegionShape {
     Ball { centre: [f64; 3], radius: f64 },
 }
 
-/// A region that holds no volume, or whose size is no number.
+/// A region without volume, or with a size that is not a finite number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoRegion;
 
 impl fmt::Display for NoRegion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "expected a region of some volume")
+        write!(f, "expected a region with a volume above 0 m3")
     }
 }
 
@@ -56,7 +56,8 @@ impl Region {
         }
     }
 
-    /// Whether a point lies inside. A box holds its lower faces and not its upper ones: of boxes that fill a space, one holds it.
+    /// Whether a point lies inside. A box contains its lower faces and not its upper faces, so of boxes that fill a
+    /// space exactly one contains the point.
     pub fn holds(&self, point: &[f64; 3]) -> bool {
         match self.0 {
             RegionShape::Block { lower, upper } => (0..3).all(|k| lower[k] <= point[k] && point[k] < upper[k]),
@@ -85,8 +86,8 @@ impl Region {
         }
     }
 
-    /// Porosity, from the volumes (m³) that bodies have inside the region. What bodies overlap at their contacts counts twice, as
-    /// it does in their masses.
+    /// Porosity, from the volumes (m³) of bodies inside the region. Overlaps of bodies at their contacts count twice,
+    /// as in their masses.
     pub fn porosity(&self, shares: impl IntoIterator<Item = f64>) -> f64 {
         1.0 - shares.into_iter().sum::<f64>() / self.volume()
     }
@@ -100,7 +101,7 @@ impl Region {
         }
     }
 
-    /// Sure to miss; a ball near an edge of a box may be missed all the same.
+    /// Whether a ball surely misses the region; false does not exclude that a ball near an edge of a box misses it.
     pub(super) fn misses_ball(&self, (centre, radius): &Ball) -> bool {
         match &self.0 {
             RegionShape::Block { lower, upper } => {

@@ -1,16 +1,18 @@
-//! A bed at an instant, to be measured anywhere: in boxes, in measurement spheres, and slab by slab over its height.
+//! Measurements of a bed at an instant, anywhere: in boxes, in measurement spheres, and slab by slab over its height.
 //!
-//! - **Porosity** has the exact part of every body that lies inside.
-//! - **Stress** has of every contact the part of its branch that lies inside, `σ = -(1/V) Σ s F ⊗ L` with the share s of the
-//!   line between the centroids (Goldhirsch 2010, Granular Matter 12, 239-252, for the sharp border of a region; with s = 1 or
-//!   0 it is the form of Christoffersen et al. 1981, [`super::stress`]). So pieces add up to the whole, and between two levels
-//!   the vertical stress is the mean of all that is carried, whatever grains the levels cut.
-//! - **Velocity and acceleration** are plain means over the bodies whose centroid lies inside, each counting alike whatever its
-//!   mass (Ahmadi et al. 2026, Eq. 2 and the text after it). An acceleration is that of contacts and weight, without local damping.
-//! - **Coordination** is of those same bodies, their neighbours outside among them; **fabric** is of the contacts between
-//!   bodies whose point lies inside.
+//! - **Porosity** uses the exact part of every body inside the region.
+//! - **Stress** uses the part of the branch of each contact inside the region, `σ = -(1/V) Σ s F ⊗ L` with the share s
+//!   of the line between the centroids (Goldhirsch 2010, Granular Matter 12, 239-252, for the sharp border of a region;
+//!   with s = 1 or 0 it is the form of Christoffersen et al. 1981, [`super::stress`]). So the stresses of parts add up
+//!   to the stress of the whole, and between two levels the vertical stress is the mean of all carried forces, for any
+//!   grains cut by the levels.
+//! - **Velocity and acceleration** are plain means over the bodies whose centroid lies inside; every body counts
+//!   equally, independent of its mass (Ahmadi et al. 2026, Eq. 2 and the text after it). The acceleration is due to
+//!   contacts and weight, without local damping.
+//! - **Coordination** counts the neighbours of the same bodies, including neighbours outside; **fabric** uses the
+//!   contacts between bodies whose point lies inside.
 //!
-//! In a periodic bed a region may lie anywhere and reach over borders.
+//! In a periodic bed a region may lie anywhere and cross borders.
 
 use super::fabric::{equivalent, rows};
 use super::forces::ContactPush;
@@ -23,10 +25,10 @@ use crate::solvers::granular::vector::{Vec3, add, dot, norm, scale, sub};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Wider than any bed, so that only two levels cut it; m.
+/// Wider than any bed, so that only the two levels cut the bed; m.
 const WIDE: f64 = 1e4;
 
-/// Bodies and contacts of a bed, brought back into its period.
+/// Bodies and contacts of a bed, moved back into its period.
 #[derive(Debug, Clone)]
 pub struct Survey {
     grains: Vec<Grain>,
@@ -52,7 +54,7 @@ struct Touch {
     centre: Vec3,
     point: Vec3,
     branch: Vec3,
-    /// On the first.
+    /// Force on the first body.
     force: Vec3,
     normal: Vec3,
     /// Whether the second is a wall.
@@ -60,13 +62,13 @@ struct Touch {
     friction: f64,
 }
 
-/// What a region shows.
+/// The measurements in a region.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reading {
     /// Bodies with their centroid inside.
     pub bodies: usize,
     pub porosity: f64,
-    /// Neighbours of these bodies; 0 without any.
+    /// Mean number of neighbours of these bodies; 0 if there are none.
     pub coordination: f64,
     /// Mean stress, Pa, tension positive. Row: component of the force.
     pub stress: [[f64; 3]; 3],
@@ -96,26 +98,27 @@ impl Reading {
 }
 
 impl Survey {
-    /// Surveys a bed by its snapshot of now. `densities` (kg/m3) by surface give bodies of several pebbles their volume.
+    /// Surveys a bed by its present snapshot. `densities` (kg/m3) by surface give the volume of bodies with several
+    /// pebbles.
     pub fn from_snapshot<R: Real>(bed: &Bed<R>, snapshot: &Snapshot, densities: &[f64]) -> Survey {
         let periods = [0, 1, 2].map(|axis| bed.domain().period(axis));
         let touches = snapshot.contacts.iter().filter_map(|contact| touch(bed, contact, &periods));
         Survey { grains: grains(bed, snapshot, densities, &periods), touches: touches.collect(), periods }
     }
 
-    /// Measures a region that lies anywhere.
+    /// Measures a region at any position.
     pub fn region(&self, region: &Region) -> Reading {
         self.read(region, region.volume(), &self.periods)
     }
 
-    /// Measures all that lies between two levels (m) over a plan (m2), which is that of the whole bed. `None` where the
-    /// upper level is not above the lower one.
+    /// Measures everything between two levels (m); `plan` is the plan area (m2) of the whole bed. `None` if the upper
+    /// level is not above the lower level.
     pub fn slab(&self, [low, high]: [f64; 2], plan: f64) -> Option<Reading> {
         let region = Region::block([-WIDE, -WIDE, low], [WIDE, WIDE, high]).ok()?;
         Some(self.read(&region, plan * (high - low), &[None; 3]))
     }
 
-    /// Unit normals of the contacts between bodies; of those alone that carry more than `least` (N) along them.
+    /// Unit normals of the contacts between bodies with a normal force above `least` (N).
     pub fn normals(&self, least: f64) -> impl Iterator<Item = [f64; 3]> + '_ {
         self.inner().filter(move |touch| touch.normal_force() > least).map(|touch| touch.normal)
     }
@@ -184,7 +187,7 @@ impl Touch {
         dot(self.force, self.normal)
     }
 
-    /// From the first centroid to whatever of it is measured, m.
+    /// Largest distance of a measured part from the first centroid, m.
     fn reach(&self) -> f64 {
         norm(self.branch).max(norm(sub(self.point, self.centre)))
     }
@@ -200,7 +203,7 @@ fn grains<R: Real>(bed: &Bed<R>, snapshot: &Snapshot, densities: &[f64], periods
         .zip(neighbours(bed.len(), &pairs))
         .map(|(state, neighbours)| {
             let number = state.id.0 as usize;
-            // with what mass scaling added; 0 where a body keeps its velocity
+            // including mass scaling; 0 if a body keeps its velocity
             let inverse_mass = bed.bodies[bed.index[number] as usize].inverse_mass;
             let acceleration = scale(forces[number].net, inverse_mass);
             Grain {
@@ -249,12 +252,12 @@ fn touch<R: Real>(bed: &Bed<R>, contact: &ContactState, periods: &[Option<f64>; 
     })
 }
 
-/// What brings a place back into the period, m.
+/// The shift that moves a position back into the period, m.
 fn into_period(place: &Vec3, periods: &[Option<f64>; 3]) -> Vec3 {
     [0, 1, 2].map(|axis| periods[axis].map_or(0.0, |period| -period * (place[axis] / period).floor()))
 }
 
-/// Shifts, m, by which what reaches so far round a place comes near a box.
+/// Shifts, m, by which a body of this reach comes near a box across a period.
 fn images(place: &Vec3, reach: f64, [low, high]: &[Vec3; 2], periods: &[Option<f64>; 3]) -> Vec<Vec3> {
     let [x, y, z] = [0, 1, 2].map(|axis| {
         let (least, most) = (low[axis] - reach - place[axis], high[axis] + reach - place[axis]);

@@ -1,4 +1,4 @@
-//! Porosity of lattices, pieces that add up to the whole, coordination and stress in closed form.
+//! Porosity of lattices, parts that add up to the whole, coordination and stress in closed form.
 
 use super::*;
 use crate::solvers::granular::clump::{Pebble, Template};
@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
-/// Porosity of a lattice of spheres (m) in one cell, wherever the cell begins: spheres at `sites` and their images.
+/// Porosity of a lattice of spheres (m) in one cell for any start of the cell: spheres at `sites` and their images.
 fn lattice(cell: [f64; 3], sites: &[[f64; 3]], radius: f64, start: [f64; 3]) -> f64 {
     let region = Region::block(start, std::array::from_fn(|k| start[k] + cell[k])).unwrap();
     let images = (0..125).map(|n| [n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2]);
@@ -40,7 +40,7 @@ fn lattices_have_the_porosity_of_the_books() {
 
 #[test]
 fn a_large_measurement_sphere_sees_the_lattice() {
-    // What is left is the count of spheres at the border: it shrinks with the radius to the power of about -2.
+    // The remaining error is the count of spheres at the border: it decreases with the radius to the power of about -2.
     let region = Region::sphere([0.1, 0.2, 0.3], 12.0).unwrap();
     let places = (0..27 * 27 * 27).map(|n| [n % 27 - 13, n / 27 % 27 - 13, n / 729 - 13]);
     let shares = places.map(|p| region.share_of_sphere((p.map(f64::from), 0.5)));
@@ -75,7 +75,7 @@ fn cuts() -> impl Strategy<Value = [[f64; 2]; 3]> {
     prop::array::uniform3(prop::array::uniform2(-1.5..1.5f64))
 }
 
-/// A clump of three pebbles that all share a part, and its volume.
+/// A clump of three pebbles with a common part, and its volume.
 fn clump(shift: [f64; 3]) -> (Vec<Ball>, f64) {
     let balls = [([0.0, 0.0, 0.0], 1.0), ([0.8, 0.3, -0.1], 0.8), ([0.2, 0.7, 0.4], 0.9)];
     let pebbles = balls.map(|(c, radius)| Pebble { centre: Vector3::from(c), radius });
@@ -116,7 +116,7 @@ proptest! {
     fn pieces_of_a_clump_add_up(cuts in cuts(), shift in place()) {
         let (pebbles, volume) = clump(shift);
         let total: f64 = boxes(&cuts).iter().map(|b| b.share_of_clump(&pebbles, volume)).sum();
-        // a cut that all but touches a pebble leaves its quadrature a corner of 1e-9
+        // a cut that nearly touches a pebble causes an error of 1e-9 in its quadrature
         prop_assert!((total - volume).abs() < 1e-8 * volume, "{}", total - volume);
     }
 
@@ -161,7 +161,7 @@ fn symmetry_planes_cut_a_clump_in_equal_parts() {
         let error = octant.share_of_clump(&pebbles, volume) - volume / 8.0;
         assert!(error.abs() < 1e-11, "{error}");
     }
-    // Borders that touch a pebble, or share its centre.
+    // Borders that touch a pebble, or have the same centre.
     let region = Region::sphere([0.4, 0.0, 0.0], 0.5).unwrap();
     assert!((region.share_of_clump(&pebbles, volume) - region.volume()).abs() < 1e-11);
     let region = Region::block([-0.9, -2.0, -2.0], [0.9, 2.0, 2.0]).unwrap();
@@ -200,7 +200,7 @@ fn a_cubic_lattice_has_six_neighbours_a_sphere() {
 
 #[test]
 fn pebbles_that_touch_twice_are_one_pair_and_loose_bodies_are_rattlers() {
-    // A triangle, one body that leans on it, one that touches nothing; 9 is a wall.
+    // A triangle, one body that leans on it, one without contacts; 9 is a wall.
     let pairs = [(0, 1), (1, 2), (2, 0), (0, 2), (2, 0), (3, 1), (3, 3), (4, 9)];
     let found = coordination(5, &pairs);
     assert_eq!(found, Coordination { mean: 8.0 / 5.0, without_rattlers: 7.0 / 3.0, rattlers: 2, pairs: 4 });
@@ -219,12 +219,13 @@ fn a_column_carries_the_mean_of_its_weight() {
     let region = Region::block([-1.0, -1.0, 0.0], [1.0, 1.0, height]).unwrap();
     let expected = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, -0.5 * count as f64 * weight / area));
     assert!((stress(&region, (0..count).map(contact)) - expected).norm() < 1e-14);
-    // Over the column and as much again that holds nothing, it is half of that.
+    // Over the column and an equal empty volume it is half of this.
     let region = Region::block([-1.0, -1.0, 0.0], [1.0, 1.0, 2.0 * height]).unwrap();
     assert!((stress(&region, (0..count).map(contact)) - expected * 0.5).norm() < 1e-14);
 }
 
-/// Contacts of a lattice whose spheres all press on their neighbours with the force (N), halves of every pair, as seen from i.
+/// Contacts of a lattice in which all spheres press on their neighbours with the force (N); one half of every pair, as
+/// seen from i.
 fn pressed(sites: &[[f64; 3]], neighbours: &[[f64; 3]], force: f64) -> Vec<Contact> {
     let images = (0..125).map(|n| [n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2].map(f64::from));
     let centres = images.flat_map(|i| sites.iter().map(move |s| Vector3::from(*s) + Vector3::from(i)));
@@ -253,7 +254,7 @@ fn a_pressed_lattice_has_the_pressure_of_the_closed_form() {
     assert!((found + Matrix3::identity() * (8.0 * 5.0 / 2.0_f64.sqrt())).norm() < 1e-13);
 }
 
-/// Directions spread evenly over the sphere, by the golden angle.
+/// Directions distributed evenly over the sphere, by the golden angle.
 fn even(count: u32) -> impl Iterator<Item = [f64; 3]> + Clone {
     (0..count).map(move |k| {
         let z = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(count);
@@ -287,7 +288,7 @@ fn a_known_anisotropy_is_found_again() {
     // density (1 + a (3 cos² θ - 1)/2)/(4π): the fabric's deviator is a/5
     let amplitude = 0.6;
     let weight = |z: f64| 1.0 + amplitude * 0.5 * (3.0 * z * z - 1.0);
-    // a direction as often as it weighs
+    // a direction as often as its weight
     let normals = even(4000).flat_map(|n| std::iter::repeat_n(n, (50.0 * weight(n[2])).round() as usize));
     let found = Fabric::from_normals(normals);
     assert!((found.deviator() / (amplitude / 5.0) - 1.0).abs() < 5e-3, "{}", found.deviator());
@@ -296,7 +297,7 @@ fn a_known_anisotropy_is_found_again() {
 
 #[test]
 fn exponential_forces_are_known_as_such() {
-    // quantiles of an exponential of mean 7 N, half of its friction used by each
+    // quantiles of an exponential distribution of mean 7 N, each with half of its friction used
     let count = 100_000;
     let force = |k: i32| -7.0 * (1.0 - (f64::from(k) + 0.5) / f64::from(count)).ln();
     let pushes = (0..count).map(|k| ContactPush { normal: force(k), shear: 0.25 * force(k), friction: 0.5 });

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// A number of a motion that is out of its range, and what it should be.
+/// A number of a motion that is out of its range, and its valid range.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionError {
     pub name: &'static str,

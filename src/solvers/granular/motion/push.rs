@@ -1,4 +1,4 @@
-//! A force that an actuator applies, as it goes in time.
+//! A force applied by an actuator, as a function of time.
 
 use super::error::{MotionError, require};
 use serde::{Deserialize, Serialize};
@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Push {
     Constant(f64),
-    /// `low` at `start`, then `low + (high - low) (1 - cos 2 pi f (t - start)) / 2`. Before it the force grows straight from
-    /// nothing over the time `ramp`.
+    /// `low` at `start`, then `low + (high - low) (1 - cos 2 pi f (t - start)) / 2`. Before `start` the force grows
+    /// linearly from 0 over the time `ramp`.
     Cyclic {
         low: f64,
         high: f64,
@@ -20,7 +20,7 @@ pub enum Push {
         /// s.
         ramp: f64,
     },
-    /// Force (N) straight between times (s, growing); the first value holds before, the last one after.
+    /// Force (N) linear between times (s, increasing); the first value holds before, the last value after.
     Table {
         times: Vec<f64>,
         forces: Vec<f64>,
@@ -73,7 +73,7 @@ impl Push {
                 times.iter().try_for_each(|t| finite(name, *t))?;
                 times
                     .windows(2)
-                    .try_for_each(|pair| require(pair[1] > pair[0], name, pair[1], "each after the one before"))?;
+                    .try_for_each(|pair| require(pair[1] > pair[0], name, pair[1], "each above the time before it"))?;
                 forces.iter().try_for_each(|force| finite("applied force", *force))
             }
         }

@@ -1,9 +1,9 @@
-//! Walls stand where they should after every step, and servos reach the force that they are to feel.
+//! Walls are at their exact position after every step, and servos reach their target force.
 
 use super::*;
 use proptest::prelude::*;
 
-/// Where a wall is after a time in steps of dt.
+/// Position of a wall after a time in steps of dt.
 fn moved(motion: &WallMotion, dt: f64, steps: u32) -> Pose {
     let mut pose = Pose::default();
     for step in 0..steps {
@@ -28,7 +28,7 @@ fn a_harmonic_motion_reaches_its_amplitude() {
         assert!((at(0.0, dt, 3 * quarter) + 2e-3).abs() < 1e-15);
         assert!((at(std::f64::consts::FRAC_PI_2, dt, 2 * quarter) + 4e-3).abs() < 1e-15);
     }
-    // a thousand periods leave nothing behind
+    // after a thousand periods no error remains
     assert!(at(0.3, 1e-3, 200_000).abs() < 1e-13);
 }
 
@@ -91,7 +91,7 @@ proptest! {
     }
 }
 
-/// Errors of force, step by step, of a servo that presses down on a massless spring from 1 N too little.
+/// Force errors, step by step, of a servo that presses on a massless spring, starting 1 N too low.
 fn errors(gain: f64, steps: usize) -> Vec<f64> {
     let (stiffness, target, dt) = (1e6, 100.0, 1e-4);
     let servo = WallMotion::Servo { axis: Vector3::z(), force: target, speed_limit: 1e9, gain };
@@ -114,7 +114,7 @@ fn a_servo_relaxes_by_one_less_its_gain() {
             assert!((pair[1] - (1.0 - gain) * pair[0]).abs() < 1e-10);
         }
     }
-    // gains that overshoot still settle up to 2, and `check` refuses them
+    // gains that overshoot still converge up to 2; `check` refuses them
     let settles = |gain: f64| errors(gain, 2000).last().unwrap().abs() < 1.0;
     let (mut low, mut high) = (1.0, 4.0);
     while high - low > 1e-6 {
@@ -126,7 +126,7 @@ fn a_servo_relaxes_by_one_less_its_gain() {
 
 #[test]
 fn a_servo_finds_its_contact_and_loads_a_bed_with_mass() {
-    // ten bodies on springs with dashpots under a plate: the plate seeks them, then holds the force
+    // ten bodies on springs with dashpots under a plate: the plate moves to them, then holds the force
     let (n, mass, k, c, dt) = (10, 0.05, 1.3e7, 480.0, 1e-5);
     let servo = WallMotion::servo(Vector3::z(), 2000.0, 0.2);
     let (mut plate, mut speed) = (1e-4, 0.0);
@@ -171,7 +171,7 @@ fn a_servo_without_contact_moves_to_where_force_comes_from() {
     let free = Felt::default();
     let speed = |force| WallMotion::servo(Vector3::x(), force, 0.3).velocity(0.0, 1e-5, &free).0.x;
     assert_eq!((speed(10.0), speed(-10.0), speed(0.0)), (-0.3, 0.3, 0.0));
-    // with contact the limit holds as well
+    // with contact the limit applies as well
     let felt = Felt { force: Vector3::x() * 1e6, stiffness: 1e6, contacts: 4, ..Felt::default() };
     assert_eq!(WallMotion::servo(Vector3::x(), 10.0, 0.3).velocity(0.0, 1e-5, &felt).0.x, 0.3);
 }

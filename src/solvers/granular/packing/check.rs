@@ -1,26 +1,26 @@
-//! Recipes that no bed can be made of.
+//! Refuses invalid recipes.
 
 use super::super::clump::Template;
 use super::error::PackingError;
 use super::recipe::{GrainLayer, Recipe};
 
-/// Greatest part of the shorter side of the plan that a grain may take: a third, or it would meet itself.
+/// Largest grain as a share of the shorter side of the plan: above a third, a grain could touch its own image.
 pub const GRAIN: f64 = 1.0 / 3.0;
 
-/// Width of the widest of some templates of unit size: a clump is longer than its size.
+/// Width of the widest of some templates of unit size: a clump is longer than its sieve size.
 pub fn widest(templates: &[Template]) -> f64 {
     templates.iter().map(|template| 2.0 * template.bounding_radius()).fold(0.0, f64::max)
 }
 
 impl GrainLayer {
-    /// How far its largest grain reaches, m.
+    /// Largest width of its grains, m.
     pub fn widest(&self) -> f64 {
         self.curve.ends()[1] * widest(&self.templates)
     }
 }
 
 impl Recipe {
-    /// Fails with the first thing that no bed can be made of, before any is tried.
+    /// Fails with the first invalid value, before anything is packed.
     pub fn check(&self) -> Result<(), PackingError> {
         let number = |quantity, value: f64, fine: bool, expected| match value.is_finite() && fine {
             true => Ok(()),
@@ -35,9 +35,9 @@ impl Recipe {
         number("gravity", self.gravity, self.gravity > 0.0, "above 0 m/s2")?;
         number("local damping", self.local_damping, (0.0..1.0).contains(&self.local_damping), "from 0 to below 1")?;
         for (quantity, value) in [
-            ("force out of balance of a lift", self.rest.lift),
-            ("force out of balance of the bed", self.rest.bed),
-            ("share by which the pressure may be missed", self.rest.pressure),
+            ("limit of the force out of balance of a lift", self.rest.lift),
+            ("limit of the force out of balance of the bed", self.rest.bed),
+            ("tolerance of the pressure", self.rest.pressure),
             ("longest time of a stage", self.rest.longest),
         ] {
             number(quantity, value, value > 0.0, "above 0")?;

@@ -1,4 +1,4 @@
-//! What a bed is like at the end of a stage.
+//! The state of a bed at the end of a stage.
 
 use super::super::bed::Bed;
 use super::super::lanes::Real;
@@ -7,20 +7,20 @@ use super::super::snapshot::{ContactState, Snapshot};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What a bed goes through until it is finished.
+/// The stages of packing a bed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StageKind {
     /// A lift of a layer falls and is pressed; lifts count from 1.
     Lift { layer: String, lift: u32, lifts: u32 },
-    /// The plate is eased.
+    /// The pressure of the plate is reduced.
     Eased,
-    /// Friction comes back.
+    /// The friction of the finished bed is set.
     Restored,
-    /// The plate goes.
+    /// The plate is removed.
     Lifted,
-    /// The plate presses the finished bed again; times count from 1.
+    /// The plate presses the finished bed again; repetitions count from 1.
     Reloaded { number: u32, of: u32 },
-    /// Cells stand side by side as the bed of a track.
+    /// Cells are laid side by side as the bed of a track.
     SideBySide,
 }
 
@@ -37,11 +37,11 @@ impl fmt::Display for StageKind {
     }
 }
 
-/// A stage as it ended.
+/// A stage at its end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stage {
     pub name: String,
-    /// Time that it took, s.
+    /// Duration of the stage, s.
     pub time: f64,
     /// Pressure of the plate, Pa; 0 without it.
     pub pressure: f64,
@@ -53,21 +53,21 @@ pub struct Stage {
 /// A bed at an instant.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BedState {
-    /// Mean force out of balance over mean force that acts.
+    /// Mean force out of balance divided by the mean acting force.
     pub unbalance: f64,
     /// J.
     pub kinetic: f64,
-    /// State of each layer; those that are still to come are empty.
+    /// State of each layer; layers not packed yet are empty.
     pub layers: Vec<LayerState>,
 }
 
-/// Neighbours of the bodies of one layer, those of other layers among them.
+/// Neighbours of the bodies of one layer, including neighbours in other layers.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct LayerState {
     pub bodies: usize,
-    /// Neighbours a body.
+    /// Mean number of neighbours of a body.
     pub coordination: f64,
-    /// The same of bodies that are no rattlers.
+    /// The same for bodies that are not rattlers.
     pub without_rattlers: f64,
     /// Bodies with fewer than two neighbours.
     pub rattlers: usize,

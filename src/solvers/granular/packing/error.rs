@@ -1,4 +1,4 @@
-//! Why there is no bed.
+//! Why a bed could not be packed.
 
 use super::super::failure::Failure;
 use super::super::grains::GradingError;
@@ -8,7 +8,7 @@ use std::fmt;
 /// Why a bed was not packed.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PackingError {
-    /// A number of the recipe, and what it should be.
+    /// A number of the recipe, and its valid range.
     Number {
         layer: Option<String>,
         quantity: &'static str,
@@ -18,19 +18,19 @@ pub enum PackingError {
     NoLayers,
     /// A grading that gives no grains.
     Grading(GradingError),
-    /// Grains that the plan is too small for.
+    /// Grains that are too large for the plan.
     LargeGrain {
         layer: String,
         diameter: f64,
         side: f64,
     },
-    /// Grains that a layer is too thin for.
+    /// Grains that are too large for the thickness of the layer.
     ThinLayer {
         layer: String,
         diameter: f64,
         thickness: f64,
     },
-    /// Loose grains found no place.
+    /// There was no room for a loose grain.
     NoRoom {
         layer: String,
     },
@@ -41,7 +41,7 @@ pub enum PackingError {
         target: f64,
         time: f64,
     },
-    /// Forces are not in balance after the time that a stage may take.
+    /// Forces are not in balance after the longest time of a stage.
     Restless {
         stage: StageKind,
         unbalance: f64,
@@ -52,7 +52,7 @@ pub enum PackingError {
         stage: StageKind,
         failure: Failure,
     },
-    /// Who listens has ended it.
+    /// The caller has stopped the packing.
     Stopped,
 }
 
@@ -63,37 +63,37 @@ impl fmt::Display for PackingError {
                 let of = layer.as_ref().map_or(String::new(), |layer| format!(" of layer `{layer}`"));
                 write!(f, "the {quantity}{of} is {value}, expected {expected}")
             }
-            PackingError::NoLayers => write!(f, "there is no layer of grains to pack"),
+            PackingError::NoLayers => write!(f, "there is no layer of grains to pack; give at least one"),
             PackingError::Grading(error) => error.fmt(f),
             PackingError::LargeGrain { layer, diameter, side } => write!(
                 f,
-                "grains of `{layer}` are up to {:.0} mm wide, more than a third of the cell's {:.0} mm: they would meet themselves",
+                "grains of `{layer}` are up to {:.0} mm wide, more than a third of the cell side of {:.0} mm: a grain could touch its own periodic image",
                 1e3 * diameter,
                 1e3 * side
             ),
             PackingError::ThinLayer { layer, diameter, thickness } => write!(
                 f,
-                "layer `{layer}` of {:.0} mm is thinner than its largest grain of {:.0} mm: make it thicker, or cut the grading above",
+                "layer `{layer}` of {:.0} mm is thinner than its largest grain of {:.0} mm: make it thicker, or remove the largest sizes from the grading",
                 1e3 * thickness,
                 1e3 * diameter
             ),
             PackingError::NoRoom { layer } => {
                 write!(
                     f,
-                    "a grain of `{layer}` finds no place above the bed: take a longer cell, or cut the grading above"
+                    "there is no room above the bed for a grain of `{layer}`: take a longer cell, or remove the largest sizes from the grading"
                 )
             }
             PackingError::Pressure { stage, reached, target, time } => write!(
                 f,
-                "{stage}: the plate stands at {:.1} kPa after {time:.2} s and should press with {:.1} kPa: ask for a pressure that the \
-                 grains can bear, or damp the packing more",
+                "{stage}: the pressure of the plate is {:.1} kPa after {time:.2} s, its target {:.1} kPa: write a lower \
+                 `pressure`, or more `local_damping`",
                 reached / 1e3,
                 target / 1e3
             ),
             PackingError::Restless { stage, unbalance, limit, time } => write!(
                 f,
-                "{stage}: after {time:.2} s forces are out of balance by {unbalance:.1e} of those that act, more than {limit:.1e}: damp \
-                 the packing more, or ask for less"
+                "{stage}: forces are out of balance by {unbalance:.1e} of the acting forces after {time:.2} s, above the limit of \
+                 {limit:.1e}: write more `local_damping`, or a lower `pressure`"
             ),
             PackingError::Failure { stage, failure } => write!(f, "{stage}: {failure}"),
             PackingError::Stopped => f.write_str("packing was stopped"),

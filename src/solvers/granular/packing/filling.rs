@@ -1,14 +1,15 @@
-//! How much of its space a layer of grains is thought to fill, before it is packed.
+//! Estimate of the solid share of a layer of grains, before it is packed.
 
 use super::recipe::GrainLayer;
 
-/// How grains fill space, fitted to layers of 2 to 10 grains: to 1.5 % without friction, 3 % with it (`docs/grains.md`).
+/// Solid share of grains, fitted to layers of 2 to 10 grains: error 1.5 % without friction, 3 % with friction
+/// (`docs/grains.md`).
 struct Filling {
-    /// Solid share far from flat surfaces, over that of frictionless spheres of the same sizes.
+    /// Solid share far from flat surfaces, divided by the solid share of frictionless spheres of the same sizes.
     far: f64,
-    /// Share of it that flat surfaces take, by the size of the mean grain.
+    /// Reduction of the solid share by flat surfaces, in units of the size of the mean grain.
     flat: f64,
-    /// Share of it that much friction takes; as `1 - exp(-friction / ROUGH)`.
+    /// Reduction of the solid share by high friction, applied as `1 - exp(-friction / ROUGH)`.
     friction: f64,
 }
 
@@ -17,7 +18,7 @@ const CLUMPS: Filling = Filling { far: 1.067, flat: 0.097, friction: 0.222 };
 const ROUGH: f64 = 0.26;
 
 impl GrainLayer {
-    /// Share of its space that it is thought to fill, with this area of flat surfaces to a volume, 1/m.
+    /// Estimated solid share; `flat` is the area of flat surfaces per volume, 1/m.
     pub(super) fn solid_share(&self, flat: f64) -> f64 {
         let spheres = self.templates.iter().all(|template| template.pebbles.len() == 1);
         let filling = if spheres { SPHERES } else { CLUMPS };

@@ -1,8 +1,10 @@
-//! A compacted bed from gradings: lifts of loose grains fall and are pressed by a plate, without friction, until they are at
-//! rest; then the plate is eased, friction comes back and the plate goes (Ahmadi et al. 2026, section 2.1.2).
+//! A compacted bed from gradings: lifts of loose grains fall and are pressed by a plate, without friction, until they
+//! are at rest. Then the pressure is reduced, friction is restored and the plate is removed (Ahmadi et al. 2026,
+//! section 2.1.2).
 //!
-//! The bed is one periodic cell along x or a box with ends, between walls across or periodic there too, on a floor at z = 0. Every stage ends when
-//! forces are in balance, never by a count of steps; one that does not get there is told with what it reached.
+//! The bed is one periodic cell along x or a box with ends; across, it lies between walls or is periodic too. The floor
+//! is at z = 0. Every stage ends when forces are in balance, never after a number of steps. A stage that does not reach
+//! balance is an error that reports the state reached.
 
 mod check;
 mod describe;
@@ -31,5 +33,5 @@ pub use recipe::{GrainLayer, Packing, Recipe, Rest, Restored, lifts_that_fit};
 pub use store::StoredBed;
 pub use track::{Order, TrackAccount, TrackBed, lay};
 
-/// Counts the ways in which beds have been packed and read: another one makes another bed of the same recipe.
+/// Version of the methods of packing and reading beds: another version makes another bed from the same recipe.
 pub const METHOD: u32 = 6;

@@ -1,17 +1,18 @@
-//! The step while grains look for their places: that of a mean grain. Lighter ones are given more inertia, and no more weight;
-//! forces at rest do not know inertia.
+//! The time step while grains are rearranged: the stable step of a mean grain. Lighter grains get additional inertia,
+//! but no additional weight; forces at rest do not depend on inertia.
 
 use super::super::bed::{Bed, BodyState};
 use super::super::failure::Failure;
 use super::super::lanes::Real;
 use super::recipe::Recipe;
 
-/// The step over sqrt(m / k) of a mean grain.
+/// The step divided by sqrt(m / k) of a mean grain.
 const PACE: f64 = 0.6;
-/// Times sqrt(m / k) of itself, a body in a dense bed bears such a step: without friction, and with springs in shear that turn it.
+/// Stable step of a body in a dense bed, divided by its sqrt(m / k): without friction, and with shear springs that
+/// rotate it.
 const BEARABLE: f64 = 0.75;
 const WITH_FRICTION: f64 = 0.3;
-/// By how much a pace that was too fast bears less, and what is no pace any more.
+/// Factor on the stable step after a pace that was too fast, and the limit at which packing fails.
 const TIGHTER: f64 = 0.7;
 const LEAST_BEARABLE: f64 = 0.1;
 /// Share of the stable step that is taken.
@@ -20,7 +21,7 @@ pub(super) const SAFE: f64 = 0.8;
 pub(super) struct Pace {
     /// s.
     step: f64,
-    /// What a body bears, over sqrt(m / k).
+    /// Stable step of a body divided by sqrt(m / k).
     bearable: f64,
     /// Stiffness of contacts between grains of each layer, N/m.
     stiffness: Vec<f64>,
@@ -31,13 +32,13 @@ impl Pace {
         Pace { step: PACE * recipe.mean_step(), bearable: BEARABLE, stiffness: recipe.stiffness() }
     }
 
-    /// For beds with friction, and without dashpots between grains.
+    /// For beds with friction and without dashpots between grains.
     pub fn with_friction(recipe: &Recipe) -> Pace {
         Pace { bearable: WITH_FRICTION, ..Pace::without_friction(recipe) }
     }
 
-    /// Some steps at this pace. Contacts that form on the way may be more than a light body bears: then these steps are taken again
-    /// with more inertia, as are all that follow.
+    /// Runs some steps at this pace. New contacts may make the step unstable for a light body; then these steps are
+    /// repeated with more inertia, and all following steps use it, too.
     pub fn run<R: Real>(&mut self, bed: &mut Bed<R>, steps: u64) -> Result<(), Failure> {
         let before = bed.clone();
         loop {

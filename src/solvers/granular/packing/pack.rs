@@ -1,4 +1,4 @@
-//! A bed, lift by lift.
+//! Packs a bed, lift by lift.
 
 use super::super::grains::{Sample, grains};
 use super::super::lanes::Real;
@@ -10,7 +10,7 @@ use super::progress::Progress;
 use super::recipe::{GrainLayer, Recipe};
 use std::ops::ControlFlow;
 
-/// Builds the bed. `tell` hears how far it is, and may end it.
+/// Builds the bed. `tell` receives the progress, and may stop the packing.
 pub fn pack<R: Real, A: Answer>(
     recipe: &Recipe,
     mut tell: impl FnMut(&Progress) -> A,
@@ -21,7 +21,7 @@ pub fn pack<R: Real, A: Answer>(
     let mut top = 0.0;
     for (number, layer) in recipe.layers.iter().enumerate() {
         packed.bodies.push(press.bed.len() as u32);
-        // what a layer lacks the next one makes up for
+        // the next layer fills what this layer lacks
         top += layer.thickness;
         let sample = fill(&mut press, recipe, number, layer, top)?;
         packed.samples.push(sample);
@@ -42,8 +42,8 @@ struct Contents {
     levels: Vec<f64>,
 }
 
-/// Packs a layer lift by lift up to a level. Each has what the layer is thought to hold up to its top and lacks, by a guess that those
-/// before it have corrected.
+/// Packs a layer lift by lift up to a level. Each lift gets the estimated volume of grains still missing up to its top;
+/// the estimate is corrected by the lifts before.
 fn fill<R: Real, T: FnMut(&Progress) -> ControlFlow<()>>(
     press: &mut Press<'_, R, T>,
     recipe: &Recipe,

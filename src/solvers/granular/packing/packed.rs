@@ -1,4 +1,4 @@
-//! A finished bed, and what can be measured of it.
+//! A finished bed, and its measurements.
 
 use super::super::bed::Bed;
 use super::super::body::BodyId;
@@ -9,7 +9,7 @@ use super::super::measure::{Ball, Region, Survey};
 use super::describe::{BedState, Stage};
 use super::press::LAST;
 
-/// A finished bed, and what became of it on the way.
+/// A finished bed, and the record of its packing.
 #[derive(Clone)]
 pub struct Packed<R: Real> {
     pub bed: Bed<R>,
@@ -17,29 +17,29 @@ pub struct Packed<R: Real> {
     pub plan: [f64; 2],
     /// Density of the grains of each layer, kg/m3.
     pub densities: Vec<f64>,
-    /// Where the bodies of each layer begin, and the end of the last.
+    /// First body of each layer, and the end of the last layer.
     pub bodies: Vec<u32>,
-    /// What was taken of each grading.
+    /// The grains taken from each grading.
     pub samples: Vec<Sample>,
-    /// Level at which the plate stood on each layer under its pressure, m.
+    /// Level of the plate on each layer under its pressure, m.
     pub levels: Vec<f64>,
-    /// Each stage as it ended.
+    /// Each stage at its end.
     pub stages: Vec<Stage>,
 }
 
 impl<R: Real> Packed<R> {
-    /// The bed under the plate of its last lift, without friction, and as it is in the end.
+    /// The bed under the plate of its last lift, without friction, and the finished bed.
     pub fn pressed_and_at_rest(&self) -> [&BedState; 2] {
         let last = self.stages.len() - 1;
         [last - LAST, last].map(|stage| &self.stages[stage].state)
     }
 
-    /// Porosity between two levels, m: of the whole cell, walls included.
+    /// Porosity between two levels, m, of the whole cell, including the parts at walls.
     pub fn porosity(&self, [low, high]: [f64; 2]) -> f64 {
         1.0 - self.solid([low, high]) / (self.area() * (high - low))
     }
 
-    /// All that can be measured of it now. `bed` is its own, or a copy that something was done to.
+    /// Measurements of the present state. `bed` is the bed of this packing, or a changed copy of it.
     pub fn survey(&self, bed: &mut Bed<R>) -> Result<Survey, Failure> {
         let snapshot = bed.snapshot()?;
         Ok(Survey::from_snapshot(bed, &snapshot, &self.densities))
@@ -50,14 +50,14 @@ impl<R: Real> Packed<R> {
         self.plan[0] * self.plan[1]
     }
 
-    /// From where to where a layer lies, m: the levels of the plate that pressed it.
+    /// Lower and upper level of a layer, m: the levels of the plate that pressed it.
     pub fn between(&self, layer: usize) -> [f64; 2] {
         [layer.checked_sub(1).map_or(0.0, |below| self.levels[below]), self.levels[layer]]
     }
 
-    /// Solid volume between two levels, m3: what several pebbles of a body hold counts once.
+    /// Solid volume between two levels, m3; a part inside several pebbles of a body counts once.
     fn solid(&self, [low, high]: [f64; 2]) -> f64 {
-        // wider than any bed, so that nothing is cut but by the two levels
+        // wider than any bed, so that only the two levels cut it
         const WIDE: f64 = 1e4;
         let Ok(slab) = Region::block([-WIDE, -WIDE, low], [WIDE, WIDE, high]) else { return 0.0 };
         let mut pebbles: Vec<(BodyId, Ball)> = self.bed.pebbles().map(|p| (p.body, (p.place, p.radius))).collect();

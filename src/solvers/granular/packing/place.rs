@@ -1,4 +1,4 @@
-//! Grains set loosely above a bed: by chance, the largest first, none touching another.
+//! Places grains loosely above a bed: at random, the largest first, without contacts.
 
 use super::super::bed::{Bed, Placed};
 use super::super::clump::Template;
@@ -8,11 +8,12 @@ use super::super::vector::Vec3;
 use super::recipe::GrainLayer;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-/// Solid share of the room in which places are sought first.
+/// Solid share of the room in which positions are tried first.
 const LOOSE: f64 = 0.25;
-/// Places tried before the room grows.
+/// Positions tried before the room is enlarged.
 const TRIES: usize = 60;
-/// By how much it grows, and how often at most: then it is eighty times as high, and nothing fits.
+/// Factor of enlargement, and largest number of enlargements: then the room is eighty times as high, and no position
+/// fits.
 const GROWTH: f64 = 1.05;
 const MOST_GROWTHS: usize = 90;
 
@@ -20,17 +21,17 @@ const MOST_GROWTHS: usize = 90;
 pub(in super::super) struct Room<'a> {
     /// Along x and y, from 0, m.
     pub plan: [f64; 2],
-    /// Whether it goes on along x and y; else walls stand at both ends.
+    /// Whether it is periodic along x and y; otherwise walls are at both ends.
     pub periodic: [bool; 2],
-    /// What lies below.
+    /// Level of the surface below.
     pub base: f64,
-    /// Area of the part of its plan where grains may be, m2.
+    /// Area of the part of its plan in which grains may be, m2.
     pub area: f64,
-    /// Whether a ball at a place, of a radius, lies where grains may be.
+    /// Whether a ball with this centre and radius lies in the allowed part.
     pub free: &'a dyn Fn(&Vec3, f64) -> bool,
 }
 
-/// A grain in its place.
+/// A grain and its position.
 pub(in super::super) struct Loose {
     /// Scaled to its size.
     pub template: Template,
@@ -39,7 +40,7 @@ pub(in super::super) struct Loose {
     pub attitude: UnitQuaternion<f64>,
 }
 
-/// Places of all grains, and the level below which they lie, m; `None` where one of them is too large for the plan.
+/// Positions of all grains, and the level below which they lie, m; `None` if a grain is too large for the plan.
 pub(in super::super) fn set_loose(
     grains: &[Grain],
     templates: &[Template],
@@ -68,7 +69,7 @@ pub(in super::super) fn set_loose(
     Some((placed, room.base + height))
 }
 
-/// Puts grains into a bed, falling.
+/// Adds grains to a bed, falling.
 pub(in super::super) fn put<R: Real>(bed: &mut Bed<R>, loose: &[Loose], layer: &GrainLayer, surface: u16, fall: f64) {
     for grain in loose {
         let placed = Placed {
@@ -83,7 +84,7 @@ pub(in super::super) fn put<R: Real>(bed: &mut Bed<R>, loose: &[Loose], layer: &
     }
 }
 
-/// Pebbles that have their places, by cells as wide as the widest.
+/// Placed pebbles, by cells as wide as the widest pebble.
 struct Taken<'a> {
     room: &'a Room<'a>,
     cells: [usize; 2],
@@ -99,7 +100,7 @@ impl Taken<'_> {
         Taken { room, cells, edge, pebbles: Vec::new() }
     }
 
-    /// A place by chance, taken where it is free.
+    /// A random position, used if it is free.
     fn try_place(
         &mut self,
         template: &Template,
@@ -154,7 +155,7 @@ impl Taken<'_> {
             .any(|cell| cell[2] >= 0 && self.pebbles.get(self.index(cell)).is_some_and(|there| there.iter().any(meets)))
     }
 
-    /// Square of the distance the shorter way round, m2.
+    /// Squared distance, the shorter way across a period, m2.
     fn square(&self, a: &Vec3, b: &Vec3) -> f64 {
         let apart = |axis: usize| {
             let (d, period) = (a[axis] - b[axis], self.room.plan[axis]);
@@ -164,7 +165,7 @@ impl Taken<'_> {
     }
 }
 
-/// Every attitude as likely as any other (Shoemake 1992).
+/// A random attitude, uniformly distributed (Shoemake 1992).
 fn even_attitude(random: &mut Random) -> UnitQuaternion<f64> {
     let share = random.share();
     let [a, b] = [(); 2].map(|()| std::f64::consts::TAU * random.share());

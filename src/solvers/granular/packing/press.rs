@@ -1,4 +1,4 @@
-//! The plate that presses a bed, and the stages that it goes through.
+//! The plate that presses a bed, and its stages.
 
 use super::super::bed::Bed;
 use super::super::failure::Failure;
@@ -18,26 +18,27 @@ use super::recipe::{Recipe, Restored};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 
-/// Steps between looks at forces and at the time step.
+/// Steps between checks of forces and of the time step.
 const LOOK: u64 = 200;
-/// Looks in a row that must find rest.
+/// Number of checks in a row that must find rest.
 const CALM: usize = 3;
-/// At which loose grains fall and the plate comes down to them, m/s.
+/// Speed of falling loose grains and of the plate before it carries load, m/s.
 const FALL: f64 = 1.0;
-/// Speed of the plate once it bears, m/s.
+/// Speed of the plate after it carries load, m/s.
 const SLOW: f64 = 0.2;
-/// At which it goes away, m/s.
+/// Speed at which the plate is removed, m/s.
 const LIFT: f64 = 0.05;
-/// Share of the pressure from which the plate goes slowly.
+/// Share of the pressure from which the plate moves slowly.
 const BEARS: f64 = 0.05;
-/// A pressure, Pa, under which grains find their places in the time that a recipe allows; a grain moves by its own size in d sqrt(rho / p).
+/// Pressure, Pa, under which grains are rearranged in the time limit of a recipe; a grain moves by its own size in d
+/// sqrt(rho / p).
 const USUAL: f64 = 200e3;
 /// Gain of the servo: bodies have mass, and follow later than springs.
 const GAIN: f64 = 0.2;
-/// Share of its pressure at which the plate has gone.
+/// Share of its pressure at which the plate counts as removed.
 const GONE: f64 = 0.01;
 
-/// Stages after those of the lifts.
+/// Number of stages after the lifts.
 pub(super) const LAST: usize = 3;
 
 /// A bed under a plate.
@@ -47,16 +48,16 @@ pub(super) struct Press<'a, R: Real, T> {
     plate: WallId,
     recipe: &'a Recipe,
     area: f64,
-    /// Level of the plate when it last pressed, m.
+    /// Level of the plate when it pressed last, m.
     level: f64,
-    /// While grains are packed; `None` when they have their own inertia again.
+    /// Time step while grains are packed; `None` when the grains have their own inertia again.
     pace: Option<Pace>,
-    /// Stages in all.
+    /// Total number of stages.
     count: usize,
     tell: T,
 }
 
-/// What a stage waits for.
+/// The state that a stage waits for.
 #[derive(Clone, Copy)]
 struct Goal {
     /// Pressure of the plate, Pa.
@@ -86,12 +87,12 @@ impl<'a, R: Real, T: FnMut(&Progress) -> ControlFlow<()>> Press<'a, R, T> {
         press
     }
 
-    /// Level of the plate when it last pressed, m.
+    /// Level of the plate when it pressed last, m.
     pub fn level(&self) -> f64 {
         self.level
     }
 
-    /// A lift of loose grains is laid on the bed and pressed.
+    /// Lays a lift of loose grains on the bed and presses it.
     pub fn lay(&mut self, recipe: &Recipe, number: usize, lift: u32, grains: &[Grain]) -> Result<(), PackingError> {
         let layer = &recipe.layers[number];
         let room = Room {
@@ -115,11 +116,13 @@ impl<'a, R: Real, T: FnMut(&Progress) -> ControlFlow<()>> Press<'a, R, T> {
         Ok(())
     }
 
-    /// Eases the plate, takes it away, and loads the bed again as often as the recipe says. The recipe also says when friction comes
-    /// back: before easing, after it, or after the plate has gone. With friction a third of the contacts open when the bed springs
-    /// back. Without friction the bed comes to rest a third as stiff.
+    /// Reduces the pressure of the plate, removes the plate, and loads the bed again as often as the recipe says. The
+    /// recipe also says when friction is restored: before the reduction, after it, or after the plate is removed. With
+    /// friction, a third of the contacts open when the bed springs back. Without friction, the stiffness of the bed at
+    /// rest is only a third.
     ///
-    /// `weight`: weight of the bed over its area, Pa. The plate is eased to half of it, the mean pressure of the bed's own weight.
+    /// `weight`: weight of the bed divided by its area, Pa. The pressure is reduced to half of it, the mean pressure by
+    /// the weight of the bed.
     pub fn finish(&mut self, recipe: &Recipe, weight: f64) -> Result<(), PackingError> {
         let pressed = recipe.layers.last().map(|layer| layer.pressure);
         let eased = pressed.map(|pressure| pressure.min(0.5 * weight));
@@ -143,7 +146,7 @@ impl<'a, R: Real, T: FnMut(&Progress) -> ControlFlow<()>> Press<'a, R, T> {
         (1..=recipe.reloads).try_for_each(|number| self.reload(recipe, number, [pressed, eased]))
     }
 
-    /// The plate comes down on the finished bed, presses and goes again.
+    /// Presses the plate on the finished bed and removes it again.
     fn reload(&mut self, recipe: &Recipe, number: u32, [pressed, eased]: [Option<f64>; 2]) -> Result<(), PackingError> {
         let Some(pressure) = pressed else { return Ok(()) };
         self.lower_from(self.top(), pressure, SLOW);
@@ -152,7 +155,8 @@ impl<'a, R: Real, T: FnMut(&Progress) -> ControlFlow<()>> Press<'a, R, T> {
         self.lift(recipe.rest.bed)
     }
 
-    /// Friction and damping of the finished bed come back under a pressure of the plate, Pa; `None` after it has gone.
+    /// Restores friction and damping of the finished bed under a pressure of the plate, Pa; `None` after the plate is
+    /// removed.
     fn restore(&mut self, recipe: &Recipe, pressure: Option<f64>) -> Result<(), PackingError> {
         self.pace = None;
         self.bed.unscale_masses();
@@ -161,7 +165,7 @@ impl<'a, R: Real, T: FnMut(&Progress) -> ControlFlow<()>> Press<'a, R, T> {
         self.stand(&StageKind::Restored, pressure, recipe.rest.bed)
     }
 
-    /// Waits for rest under a pressure of the plate, Pa, and notes where it stands.
+    /// Waits for rest under a pressure of the plate, Pa, and stores the level of the plate.
     fn stand(&mut self, stage: &StageKind, pressure: Option<f64>, unbalance: f64) -> Result<(), PackingError> {
         self.until_rest(stage, Goal { pressure, unbalance }, self.level)?;
         if pressure.is_some() {
@@ -170,12 +174,12 @@ impl<'a, R: Real, T: FnMut(&Progress) -> ControlFlow<()>> Press<'a, R, T> {
         Ok(())
     }
 
-    /// The plate goes up until it all but presses no more, and the bed comes to rest.
+    /// Lifts the plate until its pressure is nearly zero, and waits until the bed is at rest.
     fn lift(&mut self, unbalance: f64) -> Result<(), PackingError> {
         let (pressure, level) = (self.pressure(), self.level);
         let up = WallMotion::Velocity { linear: Vector3::new(0.0, 0.0, LIFT), angular: Vector3::zeros() };
         self.bed.set_motion(self.plate, up);
-        // the springs under it give way long before it is a grain's size away
+        // the springs under the plate are released long before it has moved by the size of a grain
         let clear = level + self.recipe.layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
         while self.pressure() > GONE * pressure && self.height() < clear {
             self.advance(LOOK).map_err(|failure| failed(&StageKind::Lifted, failure))?;
@@ -197,7 +201,7 @@ impl<'a, R: Real, T: FnMut(&Progress) -> ControlFlow<()>> Press<'a, R, T> {
         self.bed.wall(self.plate).felt().force.z / self.area
     }
 
-    /// Out of reach of every grain, at rest.
+    /// Puts the plate out of reach of all grains, at rest.
     fn away(&mut self) {
         let high = 10.0 * (1.0 + self.recipe.layers.iter().map(|layer| layer.thickness).sum::<f64>());
         self.bed.set_motion(self.plate, WallMotion::Fixed);
@@ -215,7 +219,7 @@ impl<'a, R: Real, T: FnMut(&Progress) -> ControlFlow<()>> Press<'a, R, T> {
             .set_motion(self.plate, WallMotion::Servo { axis, force: pressure * self.area, speed_limit, gain: GAIN });
     }
 
-    /// Does some steps, each as long as it may be.
+    /// Does some steps, each with the longest allowed time step.
     fn advance(&mut self, steps: u64) -> Result<(), Failure> {
         if let Some(pace) = &mut self.pace {
             return pace.run(&mut self.bed, steps);
@@ -225,9 +229,9 @@ impl<'a, R: Real, T: FnMut(&Progress) -> ControlFlow<()>> Press<'a, R, T> {
         self.bed.run(steps)
     }
 
-    /// Runs until forces are in balance and the plate presses as it should.
+    /// Runs until forces are in balance and the pressure of the plate is at its target.
     fn until_rest(&mut self, stage: &StageKind, goal: Goal, top: f64) -> Result<(), PackingError> {
-        // loose grains need their time to fall, and grains under a lower pressure more time to find their places
+        // loose grains need time to fall, and under a lower pressure more time for rearrangement
         let slower = goal.pressure.map_or(1.0, |pressure| (USUAL / pressure).sqrt().max(1.0));
         let criterion = Criterion {
             unbalance: goal.unbalance,
@@ -253,14 +257,14 @@ impl<'a, R: Real, T: FnMut(&Progress) -> ControlFlow<()>> Press<'a, R, T> {
     }
 }
 
-/// A stage under way.
+/// A stage in progress.
 struct Pressing<'p, 'a, R: Real, T> {
     press: &'p mut Press<'a, R, T>,
     stage: &'p StageKind,
     goal: Goal,
-    /// Time that it may take, s.
+    /// Longest time of the stage, s.
     longest: f64,
-    /// Whether the plate bears already, and goes slowly.
+    /// Whether the plate carries load already, and moves slowly.
     bears: bool,
 }
 
@@ -306,7 +310,7 @@ fn failed(stage: &StageKind, failure: Failure) -> PackingError {
     PackingError::Failure { stage: stage.clone(), failure }
 }
 
-/// Numbers by chance of one lift.
+/// Random numbers of one lift.
 fn chance(recipe: &Recipe, layer: usize, lift: u32) -> Random {
     Random::new(recipe.seed, 1 << 48 | (layer as u64) << 32 | u64::from(lift))
 }

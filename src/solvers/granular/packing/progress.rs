@@ -1,6 +1,6 @@
-//! What people hear who wait for a bed.
+//! Progress reports for callers that wait for a bed.
 
-/// How far packing is, for people who wait.
+/// Progress of packing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Progress {
     pub stage: String,

@@ -1,4 +1,4 @@
-//! What a bed is made of and how it is packed, and what follows from that: its laws, its walls and its first step.
+//! The parts of a bed and the method of packing, and the laws, walls and first time step that follow from them.
 
 use super::super::bed::Bed;
 use super::super::clump::Template;
@@ -10,24 +10,24 @@ use super::super::law::{ContactLaw, ContactLaws, Surface};
 use super::super::walls::WallId;
 use serde::{Deserialize, Serialize};
 
-/// What is packed, and how.
+/// The recipe of a bed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Recipe {
     /// Sides of the cell along x and across, m.
     pub plan: [f64; 2],
-    /// Whether walls stand at both ends across; else the bed is periodic there too.
+    /// Whether walls are at both ends across; otherwise the bed is periodic across.
     pub walls: bool,
-    /// Whether walls stand at both ends along too.
+    /// Whether walls are also at both ends along.
     pub ends: bool,
     /// From the floor upwards.
     pub layers: Vec<GrainLayer>,
-    /// Downwards, m/s2.
+    /// Gravity, downwards, m/s2.
     pub gravity: f64,
     /// Local damping of the finished bed.
     pub local_damping: f64,
     #[serde(default, skip_serializing_if = "Restored::is_usual")]
     pub restored: Restored,
-    /// Times that the plate presses the finished bed again.
+    /// Number of times that the plate presses the finished bed again.
     #[serde(default, skip_serializing_if = "is_none")]
     pub reloads: u32,
     pub rest: Rest,
@@ -39,24 +39,24 @@ pub struct Recipe {
 pub struct GrainLayer {
     pub name: String,
     pub curve: Curve,
-    /// Clumps of unit size; grains are copies of them, as often of one as of another.
+    /// Clumps of unit size; grains are copies of them, of each equally often.
     pub templates: Vec<Template>,
     /// Density of a grain, kg/m3.
     pub density: f64,
     /// Surface of the grains in the finished bed.
     pub surface: Surface,
-    /// To walls, floor and plate.
+    /// Friction with walls, floor and plate.
     pub wall_friction: f64,
     /// m.
     pub thickness: f64,
     pub lifts: u32,
-    /// On each lift, Pa.
+    /// Pressure on each lift, Pa.
     pub pressure: f64,
-    /// While it is packed.
+    /// Parameters while the layer is packed.
     pub packing: Packing,
 }
 
-/// How a layer is damped while it is packed.
+/// Friction and damping of a layer while it is packed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Packing {
     pub friction: f64,
@@ -65,17 +65,17 @@ pub struct Packing {
     pub viscous_damping: f64,
 }
 
-/// The moment at which the grains get the friction and the damping of the finished bed. The paper leaves it open (Ahmadi et al. 2026,
-/// sections 2.1.2 and 2.1.3).
+/// The time at which the grains get the friction and the damping of the finished bed. The paper does not specify it
+/// (Ahmadi et al. 2026, sections 2.1.2 and 2.1.3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Restored {
-    /// Under the whole pressure of the plate.
+    /// Under the full pressure of the plate.
     Pressed,
-    /// Under the plate once it is eased to half of the bed's own weight.
+    /// Under the plate after its pressure is reduced to half of the weight of the bed.
     #[default]
     Eased,
-    /// After the plate has gone and the bed lies still without friction.
+    /// After the plate is removed and the bed is at rest without friction.
     Unloaded,
 }
 
@@ -89,16 +89,17 @@ fn is_none(times: &u32) -> bool {
     *times == 0
 }
 
-/// When a stage is at its end.
+/// Limits at which a stage ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rest {
-    /// Force out of balance over the forces that act, mean over all bodies, of a lift under its plate.
+    /// Limit of the force out of balance divided by the acting forces, mean over all bodies, for a lift under its
+    /// plate.
     pub lift: f64,
-    /// The same of the finished bed.
+    /// The same limit for the finished bed.
     pub bed: f64,
-    /// Share by which the plate may miss its pressure.
+    /// Relative tolerance of the pressure of the plate.
     pub pressure: f64,
-    /// Time that a stage may take, s; under less than 200 kPa longer by the root of that.
+    /// Longest time of a stage, s. At a pressure p below 200 kPa it is longer by the factor sqrt(200 kPa / p).
     pub longest: f64,
 }
 
@@ -108,42 +109,44 @@ impl Default for Rest {
     }
 }
 
-/// Number of lifts of a layer so thick (m), none thinner than its largest grain, which would bear the plate alone; at most as many as asked for.
+/// Number of lifts of a layer of this thickness (m), at most `asked`. No lift is thinner than the largest grain,
+/// because this grain alone would carry the plate.
 pub fn lifts_that_fit(asked: u32, thickness: f64, curve: &Curve) -> u32 {
     let most = (thickness / curve.ends()[1] + 1e-9).floor().max(1.0);
     asked.min(most as u32)
 }
 
 impl GrainLayer {
-    /// Number of lifts that it is pressed in, at most as many as asked for.
+    /// Number of lifts in which it is pressed, at most the number in the recipe.
     pub fn lifts_that_fit(&self) -> u32 {
         lifts_that_fit(self.lifts, self.thickness, &self.curve)
     }
 }
 
 impl Recipe {
-    /// The same with a sphere in the place of the clumps of every layer.
+    /// The same recipe with a sphere instead of the clumps of every layer.
     pub fn with_spheres(self) -> Recipe {
         let sphere: Vec<Template> = Template::sphere(0.5).into_iter().collect();
         let layers = self.layers.into_iter().map(|layer| GrainLayer { templates: sphere.clone(), ..layer });
         Recipe { layers: layers.collect(), ..self }
     }
 
-    /// Laws of the finished bed: surface `i` is layer `i`, the last one is walls, floor and plate, as stiff as the grains.
+    /// Laws of the finished bed: surface `i` is layer `i`; the last surface is walls, floor and plate, as stiff as the
+    /// grains.
     pub fn laws(&self) -> ContactLaws {
         self.between(|layer| (layer.surface, layer.wall_friction))
     }
 
-    /// The same without dashpots, which forces at rest do not know.
+    /// The same laws without dashpots; forces at rest do not depend on them.
     pub(super) fn laws_without_dashpots(&self) -> ContactLaws {
         self.between(|layer| (Surface { damping: [0.0; 2], ..layer.surface }, layer.wall_friction))
     }
 
-    /// Laws while it is packed.
+    /// Laws during packing.
     fn packing_laws(&self) -> ContactLaws {
         self.between(|layer| {
             let Packing { friction, viscous_damping, .. } = layer.packing;
-            // without friction nothing holds against sliding, and steps may be longer
+            // without friction shear springs have no effect, and longer steps are stable
             let shear_stiffness = if friction > 0.0 { layer.surface.shear_stiffness } else { 0.0 };
             let surface = Surface { friction, shear_stiffness, damping: [viscous_damping, 0.0], ..layer.surface };
             (surface, friction.min(layer.wall_friction))
@@ -170,7 +173,7 @@ impl Recipe {
         self.layers.iter().map(|layer| 0.5 * layer.surface.normal_stiffness).collect()
     }
 
-    /// The least sqrt(m / k) of a mean grain of any layer, s.
+    /// The smallest sqrt(m / k) of a mean grain of any layer, s.
     pub(super) fn mean_step(&self) -> f64 {
         let of = |(layer, k): (&GrainLayer, f64)| (layer.density * layer.curve.mean_volume() / k).sqrt();
         self.layers.iter().zip(self.stiffness()).map(of).fold(f64::INFINITY, f64::min)
@@ -181,13 +184,14 @@ impl Recipe {
         self.layers.len() as u16
     }
 
-    /// Area of flat surfaces around a layer of this height (m) to its volume, 1/m. What the plate loosens on one layer the next one fills.
+    /// Area of flat surfaces around a layer of this height (m) per volume, 1/m. Voids at the plate on one layer are
+    /// filled by the next layer.
     pub(super) fn flat(&self, layer: usize, height: f64) -> f64 {
         let pair = |present: bool, distance: f64| if present { 2.0 / distance } else { 0.0 };
         pair(layer == 0, height) + pair(self.walls, self.plan[1]) + pair(self.ends, self.plan[0])
     }
 
-    /// An empty bed of this plan, with floor and walls, as it is packed.
+    /// An empty bed with this plan, with floor and walls, as used for packing.
     pub(super) fn ground<R: Real>(&self) -> Bed<R> {
         let [length, width] = self.plan;
         let domain = if self.ends { Domain::open() } else { Domain::open().periodic(0, length) };
@@ -206,7 +210,7 @@ impl Recipe {
         bed
     }
 
-    /// The walls of a box, the lower and the upper one along and across. `None` of a bed that goes on.
+    /// The walls of a box, the lower and the upper one along and across. `None` for a periodic bed.
     pub fn sides(&self) -> Option<[[WallId; 2]; 2]> {
         // in the order of `ground`
         (self.walls && self.ends).then_some([[WallId(3), WallId(4)], [WallId(1), WallId(2)]])

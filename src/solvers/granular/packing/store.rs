@@ -9,7 +9,7 @@ use super::packed::Packed;
 use super::press::LAST;
 use serde::{Deserialize, Serialize};
 
-/// What [`Packed`] holds, to be kept. A bed that comes back goes on bit by bit as the one that was kept.
+/// The content of [`Packed`], for storage. A restored bed continues bit by bit like the stored bed.
 #[derive(Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct StoredBed<R: Real> {
@@ -35,28 +35,28 @@ impl<R: Real> Packed<R> {
         }
     }
 
-    /// The bed that was kept. Fails where what was kept is damaged: its lists must be those of its layers and stages.
+    /// Restores a stored bed. Fails if the data are damaged: the lists must match the layers and stages.
     pub fn restore(stored: StoredBed<R>) -> Result<Packed<R>, RestoreError> {
         let StoredBed { bed, plan, densities, bodies, samples, levels, stages } = stored;
         let packed = Packed { bed: Bed::restore(bed)?, plan, densities, bodies, samples, levels, stages };
         packed.check().map_err(RestoreError::Inconsistent).map(|()| packed)
     }
 
-    /// Whether what is said of layers and stages is said of each.
+    /// Fails unless the data of layers and stages are complete.
     fn check(&self) -> Result<(), &'static str> {
         let layers = self.densities.len();
         let of_all = |length: usize| length == layers;
         if layers == 0 || self.bed.laws.surfaces() != layers + 1 {
-            return Err("its layers are not those of its surfaces");
+            return Err("the number of layers does not match the number of surfaces");
         }
         if !of_all(self.samples.len()) || !of_all(self.levels.len()) || !of_all(self.bodies.len().wrapping_sub(1)) {
-            return Err("what is known of its layers is not of all of them");
+            return Err("data of a layer are missing");
         }
         if !self.plan.iter().chain(&self.densities).all(|x| x.is_finite() && *x > 0.0) {
-            return Err("its plan or a density is no size");
+            return Err("a side of its plan or a density is not a finite number above 0");
         }
         if !self.bodies.is_sorted() || self.bodies.last().copied() != Some(self.bed.len() as u32) {
-            return Err("its layers do not hold its bodies");
+            return Err("the number of bodies of its layers does not match its number of bodies");
         }
         if !self.samples.iter().all(|sample| sample.curve.is_whole()) {
             return Err("a grading has no points");

@@ -1,4 +1,4 @@
-//! Beds that are packed, and what refuses to be one.
+//! Beds that are packed, and recipes that are refused.
 
 use super::super::bed::Bed;
 use super::super::clump::Template;
@@ -70,8 +70,8 @@ fn a_small_bed_is_dense_level_and_at_rest() {
     assert!((3.5..pressed).contains(&lifted), "{pressed} and {lifted}");
 }
 
-/// The moment at which friction comes back: the less the plate bears then, the more contacts stay as it goes, and without load the bed
-/// flows together a little more.
+/// The time at which friction is restored: the lower the pressure of the plate then, the more contacts stay after the
+/// plate is removed; without load the bed becomes slightly denser.
 #[test]
 fn friction_comes_back_when_the_recipe_says() {
     let of = |restored| {
@@ -89,7 +89,7 @@ fn friction_comes_back_when_the_recipe_says() {
     assert!(pressed.2 < 0.9 * eased.2 && eased.2 < 0.95 * unloaded.2, "{pressed:?} {eased:?} {unloaded:?}");
 }
 
-/// A bed that is loaded again under the pressure that it was packed with sinks a little, once.
+/// A bed loaded again under the pressure of its packing settles a little, once.
 #[test]
 fn the_plate_loads_a_finished_bed_again() {
     let recipe = Recipe { restored: Restored::Pressed, reloads: 2, ..small() };
@@ -112,7 +112,8 @@ fn the_plate_loads_a_finished_bed_again() {
     assert!(sunk[1].abs() < sunk[0], "{sunk:?} m");
 }
 
-/// Spheres and clumps, between two and four grains thick, between walls and none, with friction and without: the first guess is all that one lift has.
+/// Spheres and clumps, between two and four grains thick, with and without walls, with and without friction: one lift
+/// has only the first estimate.
 #[test]
 fn a_layer_of_one_lift_is_as_thick_as_asked() {
     let clumps = super::super::grains::ClumpShape::default().templates(1).unwrap();
@@ -139,11 +140,11 @@ fn lifts_are_as_thick_as_the_largest_grain() {
 fn a_bed_that_moves_on_is_refused() {
     let short = Rest { longest: 0.02, ..Rest::default() };
     let outcome = |recipe: &Recipe| pack::<f32, _>(recipe, |_| ()).err().unwrap();
-    // the plate comes down, and there is no time to press
+    // the plate comes down, but there is no time to press
     let error = outcome(&Recipe { rest: short, ..small() });
     assert!(matches!(&error, PackingError::Pressure { reached, target, .. } if reached < target), "{error}");
-    assert!(error.to_string().contains("ballast, lift 1 of 2: the plate stands at"), "{error}");
-    // forces that must all but vanish
+    assert!(error.to_string().contains("ballast, lift 1 of 2: the pressure of the plate is"), "{error}");
+    // a limit near zero for the force out of balance
     let strict = Rest { longest: 0.3, lift: 1e-12, ..Rest::default() };
     let error = outcome(&Recipe { rest: strict, ..small() });
     assert!(matches!(error, PackingError::Restless { .. } | PackingError::Pressure { .. }), "{error}");
@@ -159,7 +160,7 @@ fn recipes_that_make_no_bed_are_refused() {
     for (change, why) in [
         (&(|r: &mut Recipe| r.layers.clear()) as &dyn Fn(&mut Recipe), "no layer"),
         (&|r| r.plan[1] = 0.0, "side of the cell is 0"),
-        (&|r| r.plan[0] = 0.1, "more than a third of the cell's 100 mm"),
+        (&|r| r.plan[0] = 0.1, "more than a third of the cell side of 100 mm"),
         (&|r| r.layers[0].thickness = 0.04, "thinner than its largest grain of 50 mm"),
         (&|r| r.layers[0].lifts = 0, "number of lifts"),
         (&|r| r.layers[0].pressure = -1.0, "pressure of layer `ballast` is -1"),
@@ -224,7 +225,7 @@ fn cells_side_by_side_keep_their_forces() {
         all
     };
     let (closed, open) = (forces(&mut bays), forces(&mut open));
-    // what is missing are contacts between the first and the last bay
+    // the missing contacts are between the first and the last bay
     let inside: Vec<_> =
         closed.iter().filter(|c| open.iter().any(|o| (o.first, o.second) == (c.first, c.second))).collect();
     assert_eq!(inside.len(), open.len());
@@ -261,7 +262,7 @@ fn copies_of_a_cell_need_no_room_between_them() {
     let count = cell.bed.len();
     let laid = lay(&[cell], &Order::of_one(2), &recipe, |_| ()).unwrap_or_else(|error| panic!("{error}"));
     let TrackAccount { bodies, held_at_ends, removed_at_seams, steps, .. } = laid.account;
-    // they are at rest as they lie
+    // they are at rest in their packed positions
     assert_eq!((bodies, removed_at_seams, steps), (2 * count, 0, 0));
     assert!(held_at_ends > 0);
 }
@@ -277,7 +278,7 @@ fn every_cell_has_its_turn() {
     }
 }
 
-/// What comes from a disk may lack a list, and is refused or as good as before.
+/// Data read from a disk may lack a list; they are refused or as good as before.
 #[test]
 fn a_bed_that_lost_a_list_is_refused() {
     let whole = serde_json::to_value(packed(&small()).store()).unwrap();
@@ -298,7 +299,7 @@ fn a_bed_that_lost_a_list_is_refused() {
     assert!(refused > 8, "{refused}");
 }
 
-/// Pointers to every list of a value, of equal neighbours in a list the first.
+/// Pointers to every list of a value; of equal neighbours in a list only the first.
 pub(in super::super) fn lists(value: &serde_json::Value) -> Vec<String> {
     let below = |name: String, value: &serde_json::Value| {
         lists(value).into_iter().map(move |rest| format!("/{name}{rest}")).collect::<Vec<_>>()

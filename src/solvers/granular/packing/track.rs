@@ -1,11 +1,12 @@
 //! The bed of a track: packed cells side by side, with held grains at its ends, brought to rest.
 //!
-//! Copies of one cell fit each other grain by grain. The ends are rough walls: of the bay that would come next, the grains that
-//! touch the bed stand there and are held, so that no grain of the bed loses a contact, and copies of one cell are at rest as they
-//! lie. A plane instead would let go what the bed has locked in along the track, and let it slide for seconds.
+//! Copies of one cell fit together grain by grain. The ends are rough walls: of the bay that would come next, the
+//! grains that touch the bed are added and held. So no grain of the bed loses a contact, and copies of one cell are at
+//! rest as they lie. A plane instead would release the locked-in stress along the track, and the bed would slide for
+//! seconds.
 //!
-//! Where another cell stands beside one, grains would be pressed into each other: of two that overlap deeply the lighter is taken
-//! out, the others push each other apart slowly, and what is left comes to rest under its own weight.
+//! Between different cells, grains would be pressed into each other. Of two grains that overlap deeply the lighter is
+//! removed, the others push each other apart slowly, and the remaining grains come to rest under their own weight.
 
 use super::super::bed::Bed;
 use super::super::body::BodyId;
@@ -33,40 +34,40 @@ pub struct TrackBed<R: Real> {
     pub account: TrackAccount,
 }
 
-/// What was made of the cells.
+/// Summary of the bed of a track.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrackAccount {
     /// The cell of each bay, from 0.
     pub order: Vec<usize>,
     /// m.
     pub length: f64,
-    /// Those that are held at the ends are not among them.
+    /// Number of bodies without the held grains at the ends.
     pub bodies: usize,
     pub held_at_ends: usize,
-    /// Taken out where unlike cells meet.
+    /// Number of grains removed between different cells.
     pub removed_at_seams: usize,
-    /// Share of the mass that was taken out.
+    /// Share of the mass that was removed.
     pub removed_mass: f64,
-    /// Until rest, s, and steps that it took.
+    /// Time until rest, s, and number of steps.
     pub time: f64,
     pub steps: u64,
     pub unbalance: f64,
 }
 
-/// Overlap over the smaller radius beyond which the lighter of two grains goes.
+/// Overlap divided by the smaller radius above which the lighter of two grains is removed.
 const DEEP: f64 = 0.15;
-/// Rounds, and steps of each, after which grains that push each other apart stand still again; and the share of the pace at which
-/// they do.
+/// Number of rounds in which overlapping grains push each other apart, and number of steps after which they are
+/// stopped; and the step as a share of the pace.
 const ROUNDS: usize = 100;
 const STEPS: u64 = 5;
 const SLOWLY: f64 = 0.25;
-/// Rounds between looks at inertia.
+/// Rounds between updates of the inertia.
 const HOLD: usize = 5;
 /// Local damping while gaps close.
 const DAMPING: f64 = 0.7;
-/// Steps between looks at rest and at inertia.
+/// Steps between checks of rest and of inertia.
 const LOOK: u64 = 200;
-/// Looks in a row that must find rest.
+/// Number of checks in a row that must find rest.
 const CALM: usize = 2;
 
 impl Order {
@@ -75,7 +76,7 @@ impl Order {
         Order(vec![0; bays])
     }
 
-    /// Cells by chance, each about as often as any other: no cell has its turn again before all have had theirs.
+    /// Cells in random order, each about equally often: no cell is repeated before all cells have been used.
     pub fn mixed(cells: usize, bays: usize, seed: u64) -> Order {
         let mut random = Random::new(seed, 1 << 40);
         let mut order = Vec::with_capacity(bays + cells);
@@ -89,10 +90,11 @@ impl Order {
     }
 }
 
-/// Lays packed cells of one recipe (but for its seed) side by side, from x = 0 on. `tell` hears how far it is, and may end it.
+/// Lays packed cells of one recipe (with different seeds) side by side, from x = 0 on. `tell` receives the progress,
+/// and may stop the work.
 ///
 /// # Panics
-/// If `order` is empty or names a cell that is not there.
+/// If `order` is empty or names a cell that does not exist.
 pub fn lay<R: Real, A: Answer>(
     cells: &[Packed<R>],
     order: &Order,
@@ -127,12 +129,12 @@ pub fn lay<R: Real, A: Answer>(
     Ok(TrackBed { bed, account })
 }
 
-/// With a further bay at each end, of the cell that stands there.
+/// The order with one more bay at each end, with the cell of that end.
 fn with_ends(order: &[usize]) -> Vec<usize> {
     [&order[..1], order, &order[order.len() - 1..]].concat()
 }
 
-/// What becomes of a body.
+/// The role of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Role {
     Free,
@@ -144,12 +146,13 @@ struct Parts {
     /// Role of every body of every bay.
     roles: Vec<Role>,
     removed: usize,
-    /// Share of the mass.
+    /// Share of the mass that is removed.
     removed_mass: f64,
 }
 
 impl Parts {
-    /// Sorts the bodies of bays with so many of them each, the first and the last bay beyond the ends.
+    /// Sorts the bodies of all bays; `sizes` are the numbers of bodies of the bays. The first and the last bay lie
+    /// beyond the ends.
     fn sorted<R: Real>(mut all: Bed<R>, sizes: &[usize]) -> Result<Parts, Failure> {
         let inside = sizes[0]..all.len() - sizes[sizes.len() - 1];
         let mut roles = vec![Role::Out; all.len()];
@@ -175,7 +178,7 @@ impl Parts {
                 (false, false) => {}
             }
         }
-        // the deepest first
+        // the deepest overlap first
         deep.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
         let masses: Vec<f64> = all.states().map(|state| state.mass).collect();
         for (_, a, b) in deep {
@@ -191,7 +194,7 @@ impl Parts {
     }
 }
 
-/// Holds the grains at the ends, and gives how many they are.
+/// Holds the grains at the ends, and returns their number.
 fn hold<R: Real>(bed: &mut Bed<R>, parts: &Parts) -> usize {
     let there = parts.roles.iter().filter(|role| **role != Role::Out).enumerate();
     let held: Vec<BodyId> =
@@ -203,7 +206,7 @@ fn hold<R: Real>(bed: &mut Bed<R>, parts: &Parts) -> usize {
     held.len()
 }
 
-/// Walls behind the held grains, for what might find its way between them.
+/// Adds walls behind the held grains, for grains that might pass between them.
 fn close<R: Real>(bed: &mut Bed<R>, recipe: &Recipe, bays: usize) {
     let length = recipe.plan[0] * bays as f64;
     let reach = |side: f64, from: f64| {
@@ -215,10 +218,11 @@ fn close<R: Real>(bed: &mut Bed<R>, recipe: &Recipe, bays: usize) {
     bed.add_plane([length + behind, 0.0, 0.0], [-1.0, 0.0, 0.0], surface);
 }
 
-/// Grains that overlap push each other apart, and stand still again after every few steps: what they store does not become speed.
+/// Lets overlapping grains push each other apart. After every few steps they are stopped, so that their stored energy
+/// does not become speed.
 fn push_apart<R: Real>(bed: &mut Bed<R>, pace: &Pace) -> Result<(), Failure> {
     for round in 0..ROUNDS {
-        // grains that hardly move form few contacts: a look at inertia costs more than the steps of a round
+        // grains that hardly move form few contacts: an update of the inertia costs more than the steps of a round
         if round.is_multiple_of(HOLD) {
             pace.hold(bed)?;
             bed.set_time_step(SLOWLY * bed.time_step());
@@ -229,17 +233,17 @@ fn push_apart<R: Real>(bed: &mut Bed<R>, pace: &Pace) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Runs until forces are in balance, and gives how far they are.
+/// Runs until forces are in balance, and returns the force out of balance.
 fn settle<R: Real>(
     bed: &mut Bed<R>,
     recipe: &Recipe,
     unlike: bool,
     tell: &mut impl FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<f64, PackingError> {
-    // where unlike cells meet, grains find their places for a second and more: as calm as a lift is calm enough there
+    // between different cells grains are rearranged for a second and more: the limit for a lift is sufficient there
     let unbalance = if unlike { recipe.rest.lift } else { recipe.rest.bed };
     let longest = recipe.rest.longest;
-    // copies of one cell lie as they did, and need no step
+    // copies of one cell are at rest already, and need no step
     let criterion = Criterion { unbalance, missed: 0.0, every: LOOK, looks: CALM, longest, look_first: true };
     let pace = Pace::with_friction(recipe);
     bed.set_laws(recipe.laws_without_dashpots());
@@ -256,7 +260,7 @@ fn settle<R: Real>(
     Ok(look.unbalance)
 }
 
-/// Cells side by side on their way to rest.
+/// Cells side by side before they are at rest.
 struct Settling<'s, R: Real, T> {
     bed: &'s mut Bed<R>,
     pace: Pace,

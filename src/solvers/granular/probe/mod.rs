@@ -1,7 +1,7 @@
-//! The stiffness of a bed under a rigid plate that is pressed on it, goes, and is pressed again.
+//! The stiffness of a bed under a rigid plate that is loaded, unloaded and loaded again.
 //!
-//! It is the plate load test of DIN 18134 on grains: pressure goes up and down in steps, each of which ends when forces are
-//! in balance. The bed that is asked is copied and does not change. The plate does not tilt.
+//! This is the plate load test of DIN 18134 on grains: pressure increases and decreases in steps, and each step ends
+//! when forces are in balance. The test works on a copy; the bed itself does not change. The plate does not tilt.
 
 mod error;
 #[cfg(test)]
@@ -22,9 +22,9 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Sides of the polygon that stands for a circle; its area is that of the circle.
+/// Number of sides of the polygon that replaces a circle; its area is the area of the circle.
 const SIDES: u32 = 48;
-/// Half the height of a plate: grains beside it never come to its top, m.
+/// Half the height of a plate: grains beside it never reach its top, m.
 const HALF_HEIGHT: f64 = 0.5;
 
 /// The outline of a plate, in plan.
@@ -34,11 +34,11 @@ pub enum Outline {
     Rectangle { length: f64, width: f64 },
     /// m.
     Circle { radius: f64 },
-    /// All of the bed, of this plan in m2.
+    /// The whole bed, with this plan area in m2.
     Whole { area: f64 },
 }
 
-/// What is pressed on a bed, and how.
+/// The plate on a bed, and its load.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Plate {
     pub outline: Outline,
@@ -46,21 +46,21 @@ pub struct Plate {
     pub centre: [f64; 2],
     /// Largest pressure, Pa.
     pub pressure: f64,
-    /// What the plate is made of: a surface of the bed.
+    /// Surface of the plate: a surface of the bed.
     pub surface: u16,
     pub rest: Stillness,
 }
 
-/// When a step of the pressure is at its end, and when a test has failed.
+/// Limits at which a pressure step ends, and at which a test fails.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Stillness {
-    /// Mean force out of balance over mean force that acts.
+    /// Limit of the mean force out of balance divided by the mean acting force.
     pub unbalance: f64,
-    /// Share of the largest pressure by which the pressure may miss its step.
+    /// Tolerance of the pressure of a step, as a share of the largest pressure.
     pub pressure: f64,
-    /// Time that a step may take, s.
+    /// Longest time of a step, s.
     pub longest: f64,
-    /// Settlement at which the plate counts as sunk in, m.
+    /// Settlement at which the plate counts as sunk, m.
     pub deepest: f64,
 }
 
@@ -70,49 +70,49 @@ impl Default for Stillness {
     }
 }
 
-/// Share of the largest pressure at which the plate counts as seated: DIN 18134 seats it with 10 kPa.
+/// Share of the largest pressure at which the plate counts as seated: in DIN 18134 the seating pressure is 10 kPa.
 pub const SEAT: f64 = 0.05;
-/// Pressures of the test over the largest one: first loading, back, second loading, back.
+/// Pressures of the test divided by the largest pressure: first loading, unloading, second loading, unloading.
 const STEPS: [f64; 12] = [SEAT, 0.25, 0.5, 0.75, 1.0, 0.5, SEAT, 0.25, 0.5, 0.75, 1.0, SEAT];
-/// Places of both full pressures among these steps, and of the seats before them.
+/// Indices of the seating before both full pressures, and of the full pressures, among these steps.
 const FIRST: [usize; 2] = [0, 4];
 const AGAIN: [usize; 2] = [6, 10];
-/// How many steps are done when the first full pressure is at rest.
+/// Number of steps done when the bed is at rest under the first full pressure.
 pub const FULL: usize = FIRST[1] + 1;
 
-/// Local damping of the copy: a test wants states of rest, not how fast they are reached.
+/// Local damping of the copy: only the states of rest matter, not the time to reach them.
 const LOCAL_DAMPING: f64 = 0.7;
-/// Largest speed of the plate, m/s; and the gain of its servo, as under the plate of the packing.
+/// Largest speed of the plate, m/s; and the gain of its servo, as for the plate of the packing.
 const SPEED: f64 = 0.02;
 const GAIN: f64 = 0.2;
-/// Inertia that may be added meanwhile, over all mass: states of rest do not know it.
+/// Additional inertia during the test, divided by all mass: states of rest do not depend on it.
 const ADDED: f64 = 0.2;
-/// Steps between looks, and looks in a row that must find rest.
+/// Steps between checks, and number of checks in a row that must find rest.
 const LOOK: u64 = 200;
 const CALM: usize = 2;
 
-/// A step of the test as it ended.
+/// A step of the test at its end.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LoadPoint {
     /// Pa.
     #[serde(rename = "pressure_Pa")]
     pub pressure: f64,
-    /// From where the plate was seated, m; downwards.
+    /// Settlement from the seated position, m; downwards.
     #[serde(rename = "settlement_m")]
     pub settlement: f64,
 }
 
-/// What a plate load test gives.
+/// The result of a plate load test.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stiffness {
     /// m2.
     pub area: f64,
-    /// Step after step.
+    /// One point per step.
     pub curve: Vec<LoadPoint>,
-    /// Force over settlement from the seat to the full pressure, first and second loading, N/m.
+    /// Force divided by settlement from the seat to the full pressure, first and second loading, N/m.
     pub first: f64,
     pub again: f64,
-    /// Deformation moduli of both loadings on a half-space, Ev1 and Ev2, Pa; `None` for a plate as large as the bed.
+    /// Deformation moduli of both loadings for a half-space, Ev1 and Ev2, Pa; `None` for a plate as large as the bed.
     pub moduli: Option<[f64; 2]>,
 }
 
@@ -126,11 +126,12 @@ impl Outline {
         }
     }
 
-    /// Modulus, Pa, of a half-space that carries a rigid plate with `stiffness`, N/m; `None` for one without an edge.
+    /// Modulus, Pa, of a half-space that carries a rigid plate with `stiffness`, N/m; `None` for a plate without an
+    /// edge.
     ///
-    /// For a circle it is `E = 1.5 r Δσ/Δs` (DIN 18134): Boussinesq's `(1 - ν²) F/(2 r s)` with `1 - ν² = 3/π`. A rectangle of
-    /// half sides a >= b has `F/s = E a/(1 - ν²) (0.73 + 1.54 (b/a)^0.75)` (Gazetas 1991, Foundation Engineering Handbook,
-    /// Table 15.1), with the same ν: 1.5 % less than exact for a square.
+    /// For a circle it is `E = 1.5 r Δσ/Δs` (DIN 18134): Boussinesq's `(1 - ν²) F/(2 r s)` with `1 - ν² = 3/π`. A
+    /// rectangle with half sides a >= b has `F/s = E a/(1 - ν²) (0.73 + 1.54 (b/a)^0.75)` (Gazetas 1991, Foundation
+    /// Engineering Handbook, Table 15.1), with the same ν: 1.5 % less than the exact value for a square.
     pub fn modulus(&self, stiffness: f64) -> Option<f64> {
         const POISSON: f64 = 3.0 / PI;
         match self {
@@ -143,7 +144,7 @@ impl Outline {
         }
     }
 
-    /// Along x and y, m; 0 of the whole.
+    /// Along x and y, m; 0 for the whole bed.
     pub fn sides(&self) -> [f64; 2] {
         match *self {
             Outline::Rectangle { length, width } => [length, width],
@@ -152,7 +153,7 @@ impl Outline {
         }
     }
 
-    /// The solid, and how far its lower face lies below its origin, m.
+    /// The solid, and the distance of its lower face below its origin, m.
     fn shape(&self) -> Result<(Shape, f64), ProbeError> {
         match *self {
             Outline::Whole { .. } => Ok((Shape::Plane { normal: Vector3::new(0.0, 0.0, -1.0) }, 0.0)),
@@ -170,7 +171,7 @@ impl Outline {
         }
     }
 
-    /// Whether a sphere that far from the middle is under the plate, in part.
+    /// Whether a sphere at this distance from the middle is at least partly under the plate.
     fn covers(&self, [x, y]: [f64; 2], radius: f64) -> bool {
         match self {
             Outline::Whole { .. } => true,
@@ -180,7 +181,8 @@ impl Outline {
     }
 }
 
-/// Presses a plate on a copy of the bed. `look` sees the copy at the end of each step, with the count of steps done, of all.
+/// Presses a plate on a copy of the bed. `look` receives the copy at the end of each step, with the number of steps
+/// done and the number of all steps.
 pub fn probe<R: Real>(
     bed: &Bed<R>,
     plate: &Plate,
@@ -222,7 +224,7 @@ impl Plate {
         let (sides, periods) = (self.outline.sides(), [0, 1].map(|axis| bed.domain().period(axis)));
         let largest = bed.pebbles().map(|pebble| pebble.radius).fold(0.0, f64::max);
         for (side, period) in sides.into_iter().zip(periods) {
-            // else a grain would meet the plate and its image
+            // otherwise a grain would touch the plate and its image
             if let Some(period) = period.filter(|period| side + 2.0 * largest > *period) {
                 return Err(ProbeError::WidePlate { side, period });
             }
@@ -236,9 +238,9 @@ struct Test<'a, R: Real> {
     bed: Bed<R>,
     plate: &'a Plate,
     wall: WallId,
-    /// From the origin of the plate down to its face, m.
+    /// Distance from the origin of the plate down to its lower face, m.
     depth: f64,
-    /// Level at which it was seated, m.
+    /// Level at which the plate was seated, m.
     seat: f64,
     stride: Stride,
 }
@@ -278,12 +280,12 @@ impl<'a, R: Real> Test<'a, R> {
     }
 }
 
-/// A step of the pressure under way.
+/// A pressure step in progress.
 struct Step<'s, 'a, R: Real> {
     test: &'s mut Test<'a, R>,
     /// Pa.
     target: f64,
-    /// Level from which settlement counts, m.
+    /// Level from which settlement is measured, m.
     from: f64,
 }
 
@@ -320,7 +322,7 @@ impl<R: Real> Waiting<R> for Step<'_, '_, R> {
     }
 }
 
-/// Highest point of what is under the plate, m.
+/// Highest point of the grains under the plate, m.
 fn top_under<R: Real>(bed: &Bed<R>, plate: &Plate) -> Option<f64> {
     let away = |axis: usize, place: &Vec3| {
         let way = place[axis] - plate.centre[axis];

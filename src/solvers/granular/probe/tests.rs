@@ -1,4 +1,4 @@
-//! Plates on beds whose stiffness has a closed form, and plates that are none.
+//! Plates on beds whose stiffness has a closed form, and invalid plates.
 
 use super::super::law::{ContactLaws, DashpotMode, Surface};
 use super::super::measure::packed::{bed, recipe};
@@ -42,7 +42,7 @@ fn studs_are_springs_under_every_plate() {
         (Outline::Whole { area: SIDE * SIDE }, middle, 16.0),
         (Outline::Rectangle { length: 0.2, width: 0.2 }, middle, 4.0),
         (Outline::Rectangle { length: 0.06, width: 0.4 }, [3.0 * eighth, 0.5 * SIDE], 4.0),
-        // over the border of the period
+        // across the border of the period
         (Outline::Rectangle { length: 0.2, width: 0.06 }, [0.0, eighth], 2.0),
         (Outline::Circle { radius: 0.05 }, [eighth, 5.0 * eighth], 1.0),
     ] {
@@ -64,8 +64,8 @@ fn moduli_are_those_of_the_standard_and_of_boussinesq() {
     let circle = Outline::Circle { radius: 0.15 };
     let modulus = circle.modulus(100e3 * circle.area() / 1e-3).unwrap();
     assert!((modulus / (1.5 * 0.15 * 100e3 / 1e-3) - 1.0).abs() < 1e-12, "{modulus}");
-    // a rigid plate is a charged lamina: F (1 - ν²)/(E s √A) is π times its capacity over √A. That of a square is 0.36679, of an
-    // ellipse of 5 to 1 a/K(e) = 0.41825, which is near that of the rectangle
+    // a rigid plate is a charged lamina: F (1 - ν²)/(E s √A) is π times its capacity divided by √A. For a square it is
+    // 0.36679, for an ellipse of 5 to 1 a/K(e) = 0.41825, which is close to the value of the rectangle
     for (ratio, capacity) in [(1.0_f64, 0.36679), (5.0, 0.41825)] {
         let outline = Outline::Rectangle { length: ratio, width: 1.0 };
         let found = 3.0 / PI / (outline.modulus(1.0).unwrap() * ratio.sqrt());
@@ -106,12 +106,12 @@ fn a_packed_bed_is_stiffer_the_second_time_and_stays_as_it_was() {
     let test = || probe(&packed.bed, &pressed, |_, _, _| ()).unwrap_or_else(|error| panic!("{error}"));
     let found = test();
     assert!(found.again > found.first && found.first > 0.0, "{found:?}");
-    // what stays is settlement, and rebound is less than all
+    // a settlement remains, and the rebound is smaller than the total
     let (full, back) = (found.curve[4].settlement, found.curve[6].settlement);
     assert!(0.0 < back && back < full, "{found:?}");
     assert_eq!(before, packed.bed.states().collect::<Vec<_>>());
     assert_eq!(found, test());
-    // a bed that was kept answers as the one that was built
+    // a stored bed gives the same result as the original bed
     let kept = Packed::<f32>::restore(packed.store()).unwrap();
     assert_eq!(found, probe(&kept.bed, &pressed, |_, _, _| ()).unwrap());
 }
@@ -125,7 +125,7 @@ fn a_stricter_measure_of_rest_gives_the_same_stiffness() {
         let pressed = Plate { surface: recipe.wall_surface(), rest, ..plate(whole, [0.15; 2]) };
         probe(&packed.bed, &pressed, |_, _, _| ()).unwrap_or_else(|error| panic!("{error}"))
     });
-    // so few spheres slip in another order on every path: up to 8 % when first loaded, 1 % again
+    // a few spheres slip in a different order on every path: up to 8 % at first loading, 1 % at second loading
     assert!((usual.first / strict.first - 1.0).abs() < 0.12, "{usual:?} and {strict:?}");
     assert!((usual.again / strict.again - 1.0).abs() < 0.05, "{usual:?} and {strict:?}");
 }

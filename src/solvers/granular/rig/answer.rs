@@ -1,35 +1,36 @@
-//! What a test gives, sleeper by sleeper.
+//! The results of a test, sleeper by sleeper.
 
 use serde::{Deserialize, Serialize};
 
-/// A sleeper over one of its cycles.
+/// The results of a sleeper over one of its cycles.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
     /// Index into [`Rig::sleepers`](super::Rig::sleepers).
     pub sleeper: usize,
-    /// The first is 1.
+    /// Number of the cycle, from 1.
     pub number: u64,
-    /// Below the place of rest under its own weight: at the end of the cycle, and where it was deepest, m.
+    /// Settlement below the position of rest under its own weight, at the end of the cycle, and at the deepest
+    /// position, m.
     pub settlement: f64,
     pub deepest: f64,
-    /// Range of force over the rebound from the deepest place to the end, N/m; 0 where nothing rebounds.
+    /// Range of force divided by the rebound from the deepest position to the end, N/m; 0 without rebound.
     pub stiffness: f64,
     /// Largest force of the bed on the sleeper, N.
     pub contact_force: f64,
-    /// Work of the actuator less what came back: the bed keeps it, J.
+    /// Work of the actuator minus the work returned: the energy that stays in the bed, J.
     pub work: f64,
     /// Time steps so far.
     pub steps: u64,
 }
 
-/// A sleeper at an instant of a cycle that is kept.
+/// A sleeper at an instant of a recorded cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CycleSample {
     pub sleeper: usize,
     pub cycle: u64,
-    /// Share of the cycle that is over, 0 .. 1.
+    /// Elapsed share of the cycle, 0 .. 1.
     pub phase: f64,
-    /// Force of the actuator, and of the bed on the sleeper, N.
+    /// Force of the actuator, and force of the bed on the sleeper, N.
     pub force: f64,
     pub contact_force: f64,
     /// m.

@@ -1,4 +1,4 @@
-//! How what stands on a bed is brought to rest: damped, with inertia added, until forces are in balance.
+//! Brings sleepers or grains on a bed to rest: with damping and additional inertia, until forces are in balance.
 
 use super::super::bed::Bed;
 use super::super::lanes::Real;
@@ -6,17 +6,17 @@ use super::super::rest::{Criterion, Look};
 use super::super::stride::{Sharing, Stride};
 use super::error::{Resting, RigError, in_cycle};
 
-/// When sleepers are at rest: the bed carries them but for a hundredth of their force.
+/// Sleepers at rest: the bed carries all but a hundredth of their force.
 pub(super) const AT_REST: Criterion =
     Criterion { unbalance: 2e-3, missed: 0.01, every: 400, looks: 3, longest: 6.0, look_first: false };
-/// When poured grains are calm enough for the next ones: as a lift of a bed is.
+/// Poured grains at rest before the next pour: the same limit as for a lift of a bed.
 pub(super) const POURED: Criterion = Criterion { unbalance: 0.01, ..AT_REST };
-/// Local damping meanwhile.
+/// Local damping during this.
 pub(super) const DAMPING: f64 = 0.7;
-/// Inertia that may be added meanwhile, over all mass: forces at rest do not know it.
+/// Additional inertia during this, divided by all mass: forces at rest do not depend on it.
 const ADDED: f64 = 0.2;
 
-/// Does `work` on a bed that is damped and has inertia added, and gives it back as it was.
+/// Does `work` on a bed with damping and additional inertia, and then restores the parameters of the bed.
 pub(super) fn calmed<R: Real, T>(
     bed: &mut Bed<R>,
     work: impl FnOnce(&mut Bed<R>, Stride) -> Result<T, RigError>,

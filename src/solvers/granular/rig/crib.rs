@@ -1,8 +1,8 @@
 //! Grains between sleepers and beside their ends: the cribs and the shoulders of a track.
 //!
-//! They are poured loosely above the bed, fall and come to rest, under their own weight and with their friction, as often as it takes
-//! to reach the height. What lies higher is taken away, as a plough does, and the rest comes to rest again. Sleepers bear on the bed
-//! meanwhile, and may go down a little.
+//! Grains are poured loosely above the bed, fall and come to rest under their own weight and with their friction; pours
+//! are repeated until the height is reached. Grains above the height are removed, like by a ballast plough, and the
+//! rest comes to rest again. During this the sleepers stand on the bed, and may settle a little.
 
 use super::super::bed::Bed;
 use super::super::body::BodyId;
@@ -19,17 +19,18 @@ use super::filling::{Filling, SOLID};
 use super::pocket::Pocket;
 use super::set_down::until_rest;
 
-/// Pours at most, and the share of the space that may stay empty below the brim: so much lies between the grains of its surface.
+/// Largest number of pours, and share of the space below the top level that may stay empty: the voids between the
+/// grains of the surface.
 const POURS: u32 = 4;
 const EMPTY: f64 = 0.1;
-/// Ratio of the dashpots meanwhile, in both directions.
+/// Ratio of the dashpots during pouring, in both directions.
 const CALMING: f64 = 0.3;
-/// At which grains begin to fall, m/s.
+/// Speed at which grains begin to fall, m/s.
 const FALL: f64 = 1.0;
-/// First of the streams of chance that pours draw from; those of packing lie below.
+/// First random stream for pours; the streams for packing are below it.
 const STREAM: u64 = 1 << 52;
 
-/// Fills the space between and beside sleepers that stand on a bed. `tell` hears the share that is done, an estimate.
+/// Fills the space between and beside sleepers that stand on a bed. `tell` receives the estimated share that is done.
 pub fn fill<R: Real, A: Answer>(
     bed: &mut Bed<R>,
     (sleepers, walls): (&[Sleeper], &[WallId]),
@@ -61,14 +62,15 @@ pub fn fill<R: Real, A: Answer>(
     Ok(())
 }
 
-/// Gives contacts dashpots while grains are poured: spheres roll on and on without. Forces at rest do not know them.
+/// Adds dashpots to contacts while grains are poured: without them spheres roll for a very long time. Forces at rest do
+/// not depend on dashpots.
 fn damp(law: &mut ContactLaw) {
     if let ContactLaw::Linear(Linear { dashpot, .. }) = law {
         *dashpot = Dashpot::Ratio { normal: CALMING, shear: CALMING };
     }
 }
 
-/// Sets grains of a solid volume, m3, above the bed, and lets them go.
+/// Places grains of a solid volume, m3, above the bed, and lets them fall.
 fn pour_in<R: Real>(
     bed: &mut Bed<R>,
     pocket: &Pocket,

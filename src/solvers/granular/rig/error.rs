@@ -1,13 +1,13 @@
-//! Why a test has no answer.
+//! Why a test has no result.
 
 use super::super::failure::Failure;
 use super::super::grains::GradingError;
 use std::fmt;
 
-/// Why a test on a rig has no answer.
+/// Why a test on a rig has no result.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RigError {
-    /// Forces are not in balance after the time that a stage may take.
+    /// Forces are not in balance after the longest time of a stage.
     Restless {
         stage: Resting,
         unbalance: f64,
@@ -16,19 +16,19 @@ pub enum RigError {
         uncarried: f64,
         time: f64,
     },
-    /// A sleeper goes down as if nothing carried it.
+    /// A sleeper sinks into the bed without resistance.
     Sunk { sleeper: usize, depth: f64, cycle: u64 },
-    /// Grains for the cribs that find no place beside the sleepers.
+    /// There is no room for a grain of the cribs beside the sleepers.
     NoRoom { layer: String },
     /// A grading that gives no grains for the cribs.
     Grading(GradingError),
-    /// Who listens has ended it.
+    /// The caller has stopped the test.
     Stopped,
-    /// The motion of grains has run away.
+    /// The motion of the grains failed.
     Failure { cycle: u64, failure: Failure },
 }
 
-/// What comes to rest before a test begins.
+/// The part that comes to rest before a test begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Resting {
     /// The sleepers under their own weight.
@@ -54,8 +54,8 @@ impl fmt::Display for RigError {
         match self {
             RigError::Restless { stage, unbalance, limit, uncarried, time } => write!(
                 f,
-                "{stage}: forces are out of balance by {:.2} % after {time:.2} s, expected {:.2} %; {:.1} % of the force on the \
-                 sleepers is not carried",
+                "{stage}: forces are out of balance by {:.2} % after {time:.2} s, above the limit of {:.2} %; the bed does not \
+                 carry {:.1} % of the force on the sleepers",
                 100.0 * unbalance,
                 100.0 * limit,
                 100.0 * uncarried
@@ -68,12 +68,12 @@ impl fmt::Display for RigError {
             ),
             RigError::NoRoom { layer } => write!(
                 f,
-                "a grain of `{layer}` finds no place between the sleepers or beside them: space the sleepers wider, or cut the \
-                 grading above"
+                "a grain of `{layer}` is too large for the space between the sleepers and beside them: write a wider sleeper \
+                 spacing, or remove the largest sizes from the grading"
             ),
             RigError::Grading(cause) => write!(f, "grains for the cribs: {cause}"),
             RigError::Stopped => f.write_str("the test was stopped"),
-            RigError::Failure { cycle: 0, failure } => write!(f, "as sleepers are set down: {failure}"),
+            RigError::Failure { cycle: 0, failure } => write!(f, "while the sleepers are set down: {failure}"),
             RigError::Failure { cycle, failure } => write!(f, "in cycle {cycle}: {failure}"),
         }
     }

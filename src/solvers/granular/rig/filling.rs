@@ -1,21 +1,21 @@
-//! What cribs and shoulders are filled with, and how high.
+//! The grains of cribs and shoulders, and their height.
 
 use super::super::packing::{GrainLayer, Recipe};
 use serde::{Deserialize, Serialize};
 
-/// Share of the space that poured grains are thought to fill. What they lack the next pour makes up for.
+/// Estimated solid share of poured grains. The next pour adds the missing grains.
 pub const SOLID: f64 = 0.55;
 
-/// How high grains lie between sleepers and beside their ends.
+/// Height of the grains between sleepers and beside their ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Crib {
     /// Above the underside of the sleepers, m.
     pub height: f64,
-    /// Width of the grains beyond the ends of the sleepers, m; 0 fills no more than the space between them.
+    /// Width of the grains beyond the ends of the sleepers, m; with 0 only the space between the sleepers is filled.
     pub shoulder: f64,
 }
 
-/// What the cribs of a bed are filled with.
+/// The filling of the cribs of a bed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filling {
     pub crib: Crib,
@@ -28,7 +28,7 @@ pub struct Filling {
 }
 
 impl Crib {
-    /// The grains of the top layer of a recipe, over so many of its cells side by side; `None` of a recipe without layers.
+    /// The grains of the top layer of a recipe, for `cells` cells side by side; `None` if the recipe has no layers.
     pub fn filling(&self, recipe: &Recipe, cells: u32) -> Option<Filling> {
         let layer = recipe.layers.last()?.clone();
         let [length, width] = recipe.plan;

@@ -1,4 +1,4 @@
-//! Parts of a bed that are glued, as binders are sprayed on ballast: what touches there, once everything is at rest.
+//! Glued parts of a bed, for example with a binder sprayed on ballast: contacts are glued after the bed is at rest.
 
 use super::super::bed::Bed;
 use super::super::bonds::Glue;
@@ -7,12 +7,12 @@ use super::super::lanes::Real;
 use super::super::snapshot::{ContactState, Party};
 use serde::{Deserialize, Serialize};
 
-/// Grains of one layer that are glued where they touch each other.
+/// Grains of one layer that are glued at their contacts with each other.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Glued {
     /// Surface of the grains: the number of their layer from the floor upwards.
     pub surface: u16,
-    /// Between which places along the bed, m; `None` glues all of it.
+    /// Start and end along the bed, m; `None` glues the whole length.
     pub along: Option<[f64; 2]>,
     pub glue: Glue,
 }
@@ -25,7 +25,7 @@ impl Glued {
     }
 }
 
-/// Glues parts of a bed, and gives how many bonds that makes.
+/// Glues parts of a bed, and returns the number of bonds.
 pub fn glue<R: Real>(bed: &mut Bed<R>, parts: &[Glued]) -> Result<usize, Failure> {
     if parts.is_empty() {
         return Ok(0);

@@ -1,15 +1,16 @@
 //! Test rigs: sleepers that are set down on a packed bed and loaded by actuators.
 //!
-//! A sleeper is a block that moves up and down under its own mass, weight, the force of its actuator and the forces of the grains
-//! below; it does not tilt. It is set down where it touches the first grain and comes to rest under its own weight, by the forces that
-//! are out of balance. The space between sleepers is empty, or [`fill`]ed with grains once they rest. From there settlement counts,
-//! downwards.
+//! A sleeper is a block that moves up and down under its own mass, its weight, the force of its actuator and the forces
+//! of the grains below; it does not tilt. It is set down where it touches the first grain and comes to rest under its
+//! own weight; the end is decided by the forces out of balance. The space between sleepers is empty, or it is
+//! [`fill`]ed with grains after the sleepers are at rest. Settlement is measured from this state, downwards.
 //!
-//! A cycle goes from the lower force to the upper one and back. What is read of it: the settlement at its end, the resilient
-//! stiffness, range of force / rebound from the deepest place to the end, and the work that the bed keeps.
+//! A cycle goes from the lower force to the upper force and back. Its results are the settlement at its end, the
+//! resilient stiffness (range of force / rebound from the deepest position to the end), and the work that stays in the
+//! bed.
 //!
-//! A plate over the whole bed may be driven down instead of loaded, and the sides of a bed that is a box may give way under a
-//! pressure: see [`Specimen`]. Forces on the plate are then on top of that pressure.
+//! A plate over the whole bed may be driven down instead of loaded, and the sides of a box-shaped bed may move under a
+//! pressure: see [`Specimen`]. Forces on the plate are then in addition to that pressure.
 
 mod answer;
 mod calm;

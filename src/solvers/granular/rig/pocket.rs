@@ -1,4 +1,5 @@
-//! The space that grains of cribs and shoulders fill: between the sleepers, and beyond their ends up to the edge of the shoulder.
+//! The space for grains of cribs and shoulders: between the sleepers, and beyond their ends up to the edge of the
+//! shoulder.
 
 use super::super::bed::Bed;
 use super::super::lanes::Real;
@@ -6,14 +7,14 @@ use super::super::walls::WallId;
 use super::description::Sleeper;
 use super::filling::Filling;
 
-/// Side of the columns by which empty space is counted, m.
+/// Side of the columns by which empty space is measured, m.
 const COLUMN: f64 = 0.01;
 
-/// The space beside some sleepers, seen from above.
+/// The space beside some sleepers, in plan.
 pub(super) struct Pocket {
     /// Middle and half sides of each sleeper along and across, m.
     blocks: Vec<[[f64; 2]; 2]>,
-    /// Greatest distance across from the middle of a sleeper, m.
+    /// Largest distance across from the middle of a sleeper, m.
     reach: f64,
     plan: [f64; 2],
     periods: [Option<f64>; 2],
@@ -24,7 +25,7 @@ pub(super) struct Pocket {
 }
 
 impl Pocket {
-    /// The space beside sleepers that are walls of a bed.
+    /// The space beside sleepers; `walls` are their walls in the bed.
     pub fn around<R: Real>(bed: &Bed<R>, sleepers: &[Sleeper], walls: &[WallId], filling: &Filling) -> Pocket {
         let underside = |(sleeper, wall): (&Sleeper, &WallId)| {
             bed.wall(*wall).pose(bed.domain()).position.z - sleeper.size[2] / 2.0
@@ -43,7 +44,7 @@ impl Pocket {
         pocket
     }
 
-    /// Whether a ball whose centre stands there in the plan lies beside all sleepers, and before the edge of the shoulder.
+    /// Whether a ball with its centre there in plan lies beside all sleepers, and inside the edge of the shoulder.
     pub fn holds(&self, place: [f64; 2], radius: f64) -> bool {
         let beside = |[middle, half]: &[[f64; 2]; 2]| {
             (0..2).any(|axis| self.apart(axis, place[axis], middle[axis]) >= half[axis] + radius)
@@ -52,7 +53,7 @@ impl Pocket {
         self.blocks.iter().all(beside) && self.blocks.iter().any(before)
     }
 
-    /// Space below a height above the underside of the sleepers that no grain covers, m3.
+    /// Space below a height above the underside of the sleepers that is not covered by grains, m3.
     pub fn empty<R: Real>(&self, bed: &Bed<R>, height: f64) -> f64 {
         let columns = self.columns();
         let mut tops = vec![self.underside; columns.count[0] * columns.count[1]];
@@ -67,7 +68,7 @@ impl Pocket {
         open.map(|(_, top)| (brim - top).max(0.0) * columns.area).sum()
     }
 
-    /// Distance along an axis, the shorter way round, m.
+    /// Distance along an axis, the shorter way across a period, m.
     fn apart(&self, axis: usize, a: f64, b: f64) -> f64 {
         let away = a - b;
         self.periods[axis].map_or(away, |period| away - period * (away / period).round()).abs()
@@ -85,20 +86,20 @@ struct Columns {
     count: [usize; 2],
     /// m.
     sides: [f64; 2],
-    /// Area of one, m2.
+    /// Area of one column, m2.
     area: f64,
     periodic: [bool; 2],
 }
 
 impl Columns {
-    /// Middles of all columns in their order, m.
+    /// Centres of all columns in their order, m.
     fn places(&self) -> impl Iterator<Item = [f64; 2]> + use<> {
         let ([along, across], [dx, dy]) = (self.count, self.sides);
         (0..along * across)
             .map(move |column| [((column % along) as f64 + 0.5) * dx, ((column / along) as f64 + 0.5) * dy])
     }
 
-    /// Tells each column that a ball covers, and the square of its distance from the middle of the ball, m2.
+    /// Calls `tell` for each column covered by a ball, with its squared distance from the middle of the ball, m2.
     fn near(&self, place: [f64; 3], radius: f64, mut tell: impl FnMut(usize, f64)) {
         let range = |axis: usize| {
             let of = |x: f64| (x / self.sides[axis] - 0.5) as i64;

@@ -1,4 +1,4 @@
-//! Sensors: a region of the bed, and what is read in it.
+//! Sensors: a region of the bed, and its readings.
 
 use super::super::bed::Bed;
 use super::super::domain::Domain;
@@ -7,32 +7,32 @@ use super::super::measure::{Ball, Contact, Region, neighbours, stress};
 use super::super::snapshot::Snapshot;
 use serde::{Deserialize, Serialize};
 
-/// A region that stays where it is. It lies inside the bed along its period.
+/// A fixed region, inside the bed along its period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensor {
     pub region: Region,
 }
 
-/// What a sensor reads at an instant.
+/// The readings of a sensor at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SensorReading {
     /// Index into [`super::Rig::sensors`].
     pub sensor: usize,
     pub cycle: u64,
-    /// Share of the cycle that is over, 0 .. 1.
+    /// Elapsed share of the cycle, 0 .. 1.
     pub phase: f64,
     /// Vertical, positive in compression, Pa.
     pub stress: f64,
-    /// Mean over the mass of the grains whose middle lies inside, downwards, m/s.
+    /// Mass-weighted mean over the grains whose middle lies inside, downwards, m/s.
     pub velocity: f64,
-    /// Neighbours of such a grain.
+    /// Mean number of neighbours of these grains.
     pub coordination: f64,
-    /// At the end of a cycle.
+    /// Only at the end of a cycle.
     pub porosity: Option<f64>,
 }
 
 impl Sensor {
-    /// Reads the bed, all but its porosity, which costs more than all the rest.
+    /// Reads the bed without its porosity, because the porosity costs more than all other readings.
     pub fn read<R: Real>(&self, bed: &Bed<R>, snapshot: &Snapshot) -> SensorReading {
         let domain = bed.domain();
         let contacts = snapshot.contacts.iter().map(|contact| Contact {
@@ -67,7 +67,7 @@ impl Sensor {
         }
     }
 
-    /// `densities` of the grains of each surface, kg/m3.
+    /// Porosity; `densities` are the densities of the grains of each surface, kg/m3.
     pub(super) fn porosity<R: Real>(&self, bed: &Bed<R>, densities: &[f64]) -> f64 {
         let pebbles: Vec<_> = bed.pebbles().collect();
         let shares = pebbles.chunk_by(|a, b| a.body == b.body).map(|body| {
@@ -82,7 +82,7 @@ impl Sensor {
     }
 }
 
-/// A place, brought back into the period.
+/// A position, moved back into the period.
 fn into_period(domain: &Domain, place: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|axis| match domain.period(axis) {
         Some(period) => place[axis] - period * (place[axis] / period).floor(),

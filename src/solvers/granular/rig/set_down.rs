@@ -1,4 +1,4 @@
-//! Sleepers are set down on a bed, and come to rest under their own weight.
+//! Sets sleepers down on a bed and lets them come to rest under their own weight.
 
 use super::super::bed::Bed;
 use super::super::failure::Failure;
@@ -15,8 +15,8 @@ use super::error::{Resting, RigError, in_cycle};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 
-/// Sets sleepers down on a bed, each where it touches its first grain, and lets them come to rest under their own weight: what acts on
-/// them is not asked for. Gives their walls, in the order of the sleepers.
+/// Sets sleepers down on a bed, each at the level where it touches its first grain, and lets them come to rest under
+/// their own weight; their loads are not used. Returns their walls, in the order of the sleepers.
 pub fn stand<R: Real, A: Answer>(
     bed: &mut Bed<R>,
     sleepers: &[Sleeper],
@@ -28,9 +28,9 @@ pub fn stand<R: Real, A: Answer>(
     Ok(walls)
 }
 
-/// Puts the sleepers on the bed, each where it touches its first grain.
+/// Puts the sleepers on the bed, each at the level where it touches its first grain.
 pub(super) fn place<R: Real>(bed: &mut Bed<R>, sleepers: &[Sleeper], gravity: f64) -> Vec<WallId> {
-    // walls, floor and plate are of one surface, the last; sleepers are too
+    // walls, floor and plate have the last surface; sleepers have it, too
     let surface = bed.laws().surfaces() as u16 - 1;
     let stand = |sleeper: &Sleeper| {
         let [length, width, height] = sleeper.size;
@@ -46,7 +46,7 @@ pub(super) fn place<R: Real>(bed: &mut Bed<R>, sleepers: &[Sleeper], gravity: f6
     walls.collect()
 }
 
-/// Motion of a sleeper under its weight, N, and a push.
+/// Motion of a sleeper under its weight, N, and an applied force.
 pub(super) fn motion(sleeper: &Sleeper, weight: f64, damping: f64, push: Push) -> WallMotion {
     WallMotion::Loaded { axis: -Vector3::z(), mass: sleeper.mass, weight, damping, push }
 }
@@ -63,7 +63,7 @@ fn highest<R: Real>(bed: &Bed<R>, sleeper: &Sleeper) -> f64 {
     bed.pebbles().filter(|p| under(p.place, p.radius)).map(|p| p.place[2] + p.radius).fold(0.0, f64::max)
 }
 
-/// Runs a stage until forces are in balance and the bed carries the sleepers. `tell` hears how far it is.
+/// Runs a stage until forces are in balance and the bed carries the sleepers. `tell` receives the progress.
 pub(super) fn until_rest<R: Real>(
     bed: &mut Bed<R>,
     walls: &[WallId],
@@ -77,7 +77,7 @@ pub(super) fn until_rest<R: Real>(
     })
 }
 
-/// Sleepers on their way to rest.
+/// Sleepers before they are at rest.
 struct Standing<'s, R: Real, T> {
     bed: &'s mut Bed<R>,
     walls: &'s [WallId],

@@ -1,8 +1,9 @@
-//! A specimen: a bed in a box whose four sides give way under a pressure that is held, as in a triaxial cell.
+//! A specimen: a bed in a box with four sides that move under a constant pressure, as in a triaxial cell.
 //!
-//! Stress and strain are those of the box: lengths between its walls, forces on them over their areas, positive in compression.
-//! The vertical stress is the mean of what plate and floor feel, so that the weight of the grains counts by half, as it does at half
-//! the height. Strains count from the end of consolidation, over the lengths of then.
+//! Stress and strain are values of the box: lengths between its walls, and forces on the walls divided by their areas,
+//! positive in compression. The vertical stress is the mean of plate and floor, so that half of the weight of the
+//! grains counts, as at half the height. Strains are measured from the end of consolidation, relative to the lengths at
+//! that time.
 
 use super::super::bed::Bed;
 use super::super::failure::Failure;
@@ -18,17 +19,18 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
-/// Largest speed of the sides, m/s; and the gain of their servos, the usual one: with less they lag behind a specimen that dilates.
+/// Largest speed of the sides, m/s; and the gain of their servos, the usual gain: with a lower gain they lag behind a
+/// dilating specimen.
 const SPEED: f64 = 0.1;
 const GAIN: f64 = 0.5;
-/// When consolidation is over: a side may miss a fiftieth of its pressure.
+/// End of consolidation: the pressure of a side may differ from its target by 2 %.
 const CONSOLIDATED: Criterion = Criterion { missed: 0.02, ..AT_REST };
 
-/// The walls that give way, and what they press with.
+/// The moving walls, and their pressure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Specimen {
     pub floor: WallId,
-    /// Along, across: the lower and the upper of each.
+    /// Along, across: the lower and the upper wall of each.
     pub sides: [[WallId; 2]; 2],
     /// Pa.
     pub pressure: f64,
@@ -42,18 +44,18 @@ pub(super) struct Size {
     pub height: f64,
 }
 
-/// A specimen at an instant of a cycle that is kept.
+/// A specimen at an instant of a recorded cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpecimenState {
     pub cycle: u64,
-    /// Share of the cycle that is over, 0 .. 1.
+    /// Elapsed share of the cycle, 0 .. 1.
     pub phase: f64,
-    /// Shortening over height, loss of volume over volume.
+    /// Shortening divided by height, loss of volume divided by volume.
     pub axial_strain: f64,
     pub volume_strain: f64,
     /// Pa.
     pub axial_stress: f64,
-    /// Mean of the four sides, Pa.
+    /// Mean over the four sides, Pa.
     pub lateral_stress: f64,
 }
 
@@ -80,7 +82,7 @@ impl Size {
 }
 
 impl Specimen {
-    /// With a plate whose lower face is at `height`, m.
+    /// Size of the specimen under a plate with its lower face at `height`, m.
     pub(super) fn size<R: Real>(&self, bed: &Bed<R>, height: f64) -> Size {
         let plan = [0, 1].map(|axis| {
             let [low, high] = self.sides[axis].map(|side| bed.wall(side).pose(bed.domain()).position[axis]);
@@ -89,7 +91,7 @@ impl Specimen {
         Size { plan, height }
     }
 
-    /// Lets the sides follow their pressure on the areas of now.
+    /// Applies the pressure to the sides, for their present areas.
     pub(super) fn hold<R: Real>(&self, bed: &mut Bed<R>, size: &Size) {
         for (axis, side, outward) in self.each() {
             let force = self.pressure * area_of_side(size, axis);
@@ -97,7 +99,8 @@ impl Specimen {
         }
     }
 
-    /// Runs until forces are in balance and sides and plate press as they should. `push` gives the plate its force, N.
+    /// Runs until forces are in balance and the pressures of sides and plate are at their targets. `push` sets the
+    /// force of the plate, N.
     pub(super) fn consolidate<R: Real>(
         &self,
         bed: &mut Bed<R>,
@@ -115,7 +118,7 @@ impl Specimen {
         })
     }
 
-    /// What is read of it, against the size that it had.
+    /// Readings of the specimen, relative to its size `rest`.
     pub(super) fn state<R: Real>(&self, bed: &Bed<R>, plate: WallId, face: f64, rest: &Size) -> SpecimenState {
         let plate = bed.wall(plate);
         let size = self.size(bed, plate.pose(bed.domain()).position.z - face);
@@ -130,12 +133,12 @@ impl Specimen {
         }
     }
 
-    /// On each side, Pa.
+    /// Pressure on each side, Pa.
     fn pressures<R: Real>(&self, bed: &Bed<R>, size: &Size) -> [f64; 4] {
         self.each().map(|(axis, side, outward)| bed.wall(side).felt().force.dot(&outward) / area_of_side(size, axis))
     }
 
-    /// Axis, wall, and the way out.
+    /// Axis, wall, and outward direction.
     fn each(&self) -> [(usize, WallId, Vector3<f64>); 4] {
         let [[west, east], [near, far]] = self.sides;
         let (x, y) = (Vector3::x(), Vector3::y());
@@ -143,17 +146,17 @@ impl Specimen {
     }
 }
 
-/// Area of a side that stands across an axis, m2.
+/// Area of a side perpendicular to an axis, m2.
 fn area_of_side(size: &Size, axis: usize) -> f64 {
     size.plan[1 - axis] * size.height
 }
 
-/// A specimen on its way to rest under the pressure on its sides.
+/// A specimen before it is at rest under the pressure on its sides.
 struct Consolidation<'s, R: Real, L, P, T> {
     specimen: &'s Specimen,
     bed: &'s mut Bed<R>,
     plate: WallId,
-    /// Gives the level of the plate's face, m.
+    /// Returns the level of the lower face of the plate, m.
     level: L,
     /// Size of the specimen before the last steps.
     size: Size,

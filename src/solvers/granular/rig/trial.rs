@@ -1,4 +1,4 @@
-//! A test as it runs: piece by piece of a cycle, so that it can stop and go on between any two of them.
+//! A running test. It runs in pieces of a cycle, so that it can stop and continue between any two pieces.
 
 use super::super::bed::Bed;
 use super::super::lanes::Real;
@@ -19,13 +19,14 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
-/// Pieces of a cycle: forces and depths are looked at after each, sensors are read after every second one. The deepest place of a
-/// sine is missed by less than a thousandth.
+/// Pieces of a cycle: forces and depths are read after each piece, sensors after every second piece. The error of the
+/// deepest position of a sine is below a thousandth.
 pub(super) const PIECES: u64 = 64;
 const SENSORS: u64 = 2;
-/// Pieces over which the lower force grows.
+/// Number of pieces over which the lower force grows.
 const RAMP: u64 = PIECES / 2;
-/// Share of the height of the bed that a sleeper may sink before nothing carries it.
+/// Limit of the settlement of a sleeper as a share of the height of the bed; beyond it the bed does not carry the
+/// sleeper.
 const SUNK: f64 = 0.5;
 
 /// A bed with its sleepers under test.
@@ -35,20 +36,20 @@ pub struct Trial<'a, R: Real> {
     pub(super) state: TrialState,
 }
 
-/// What a test knows beside its bed.
+/// The state of a test besides its bed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct TrialState {
     pub walls: Vec<WallId>,
-    /// Level of the sleepers' middles as they rest under their own weight, or under the pressure on a specimen, m.
+    /// Level of the middle of each sleeper at rest under its own weight, or under the pressure on a specimen, m.
     pub rest: Vec<f64>,
-    /// Size of a specimen that is consolidated.
+    /// Size of a consolidated specimen.
     pub size: Option<Size>,
     pub specimen: Vec<SpecimenState>,
     /// Time at which the first ramp begins, s.
     pub start: f64,
     pub pieces: u64,
     pub steps: u64,
-    /// Step that the bed is held at, s.
+    /// Time step of the bed, s.
     pub stride: f64,
     pub current: Vec<Current>,
     pub cycles: Vec<Cycle>,
@@ -56,19 +57,20 @@ pub(super) struct TrialState {
     pub readings: Vec<SensorReading>,
 }
 
-/// The cycle that a sleeper is in.
+/// The present cycle of a sleeper.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Current {
     deepest: f64,
     contact_force: f64,
     work: f64,
-    /// After the piece before: of the actuator, N, and of the sleeper, m.
+    /// After the piece before: force of the actuator, N, and depth of the sleeper, m.
     force: f64,
     depth: f64,
 }
 
 impl<'a, R: Real> Trial<'a, R> {
-    /// Sets the sleepers down, fills the cribs and lets all come to rest. `tell` hears the share of the longest time that this may take.
+    /// Sets the sleepers down, fills the cribs and lets everything come to rest. `tell` receives the elapsed share of
+    /// the longest time for this.
     pub fn new<A: Answer>(mut bed: Bed<R>, rig: &'a Rig, mut tell: impl FnMut(f64) -> A) -> Result<Self, RigError> {
         let mut tell = |share: f64| tell(share).flow();
         let before = bed.steps();
@@ -99,7 +101,8 @@ impl<'a, R: Real> Trial<'a, R> {
         Ok(trial)
     }
 
-    /// Gives each sleeper the force of its actuator, and the sides of a specimen their pressure, on the areas of now.
+    /// Gives each sleeper the force of its actuator, and the sides of a specimen their pressure, for their present
+    /// areas.
     fn engage(&mut self) {
         let weights = match (self.rig.specimen, self.size()) {
             (Some(specimen), Some(size)) => {
@@ -127,7 +130,7 @@ impl<'a, R: Real> Trial<'a, R> {
             }
             Load::History(points) => history(points, start, ramp),
             Load::Strain(share) => {
-                // it takes a piece to gather speed, and is half a piece late for it
+                // the plate accelerates during one piece, which costs half a piece
                 let time = self.rig.period - 0.5 * self.piece();
                 let speed = share * (self.state.rest[number] - sleeper.size[2] / 2.0) / time;
                 let velocities = vec![Vector3::zeros(), -speed * Vector3::z()];
@@ -137,14 +140,14 @@ impl<'a, R: Real> Trial<'a, R> {
         motion(sleeper, weight, self.bed.damping, push)
     }
 
-    /// Size of the specimen as it is.
+    /// Present size of the specimen.
     fn size(&self) -> Option<Size> {
         let [plate] = self.state.walls[..] else { return None };
         let level = self.bed.wall(plate).pose(self.bed.domain()).position.z - self.face();
         Some(self.rig.specimen?.size(&self.bed, level))
     }
 
-    /// From the middle of the plate down to its face, m.
+    /// Distance from the middle of the plate down to its lower face, m.
     fn face(&self) -> f64 {
         self.rig.sleepers[0].size[2] / 2.0
     }
@@ -154,7 +157,7 @@ impl<'a, R: Real> Trial<'a, R> {
         self.rig.period / PIECES as f64
     }
 
-    /// Pieces by which the actuator of a sleeper begins later than the first.
+    /// Pieces by which the actuator of a sleeper starts after the first actuator.
     fn delay(&self, sleeper: usize) -> u64 {
         match self.rig.sleepers[sleeper].load {
             Load::Cyclic { delay, .. } => (delay / self.piece()).round() as u64,
@@ -162,7 +165,7 @@ impl<'a, R: Real> Trial<'a, R> {
         }
     }
 
-    /// Pieces of the whole test, ramp and delays included.
+    /// Pieces of the whole test, including ramp and delays.
     pub fn pieces(&self) -> u64 {
         let latest = (0..self.rig.sleepers.len()).map(|sleeper| self.delay(sleeper)).max().unwrap_or(0);
         RAMP + latest + PIECES * self.rig.cycles
@@ -173,12 +176,12 @@ impl<'a, R: Real> Trial<'a, R> {
         self.state.pieces
     }
 
-    /// Time steps of the test so far, setting down included.
+    /// Time steps of the test so far, including setting down.
     pub fn steps(&self) -> u64 {
         self.state.steps
     }
 
-    /// Cycles that are over, in the order in which they ended.
+    /// Finished cycles, in the order of their ends.
     pub fn cycles(&self) -> &[Cycle] {
         &self.state.cycles
     }
@@ -187,7 +190,7 @@ impl<'a, R: Real> Trial<'a, R> {
         &self.state.samples
     }
 
-    /// What a specimen did in the cycles that are kept.
+    /// States of a specimen in the recorded cycles.
     pub fn specimen(&self) -> &[SpecimenState] {
         &self.state.specimen
     }
@@ -201,7 +204,7 @@ impl<'a, R: Real> Trial<'a, R> {
         self.state.pieces > RAMP && (self.state.pieces - RAMP).is_multiple_of(PIECES)
     }
 
-    /// Runs the next piece; false where there is none.
+    /// Runs the next piece; returns false if there is none.
     pub fn advance(&mut self) -> Result<bool, RigError> {
         if self.state.pieces == self.pieces() {
             return Ok(false);
@@ -227,7 +230,7 @@ impl<'a, R: Real> Trial<'a, R> {
         let velocity = -wall.velocity().0[2];
         let force = match wall.motion() {
             WallMotion::Loaded { push, .. } => push.force_at(self.bed.time()),
-            // a plate that is driven: what it presses with, on top of the pressure on a specimen
+            // for a driven plate: its force in addition to the pressure on a specimen
             _ => contact_force - self.rig.specimen.zip(self.size()).map_or(0.0, |(s, size)| s.pressure * size.area()),
         };
         let height = self.state.rest[sleeper] - self.rig.sleepers[sleeper].size[2] / 2.0;
@@ -268,18 +271,18 @@ impl<'a, R: Real> Trial<'a, R> {
         }
     }
 
-    /// A sleeper at the end of its cycle.
+    /// The results of a sleeper at the end of its cycle.
     fn ended(&self, sleeper: usize, number: u64) -> Cycle {
         let Current { deepest, contact_force, work, depth: settlement, .. } = self.state.current[sleeper];
         let load = &self.rig.sleepers[sleeper].load;
         let [low, high] = load.range();
-        // a constant force has no rebound: all of it stands against the whole way
+        // a constant force has no rebound: the whole force is divided by the whole settlement
         let rebound = if matches!(load, Load::Constant(_)) { settlement } else { deepest - settlement };
         let stiffness = if rebound > 0.0 { (high - low) / rebound } else { 0.0 };
         Cycle { sleeper, number, settlement, deepest, stiffness, contact_force, work, steps: self.state.steps }
     }
 
-    /// Reads the sensors in the cycles that are kept, by the first actuator.
+    /// Reads the sensors in the recorded cycles; cycles count by the first actuator.
     fn read(&mut self, cycle: u64) -> Result<(), RigError> {
         let Some(since) = self.state.pieces.checked_sub(RAMP).filter(|since| *since > 0) else { return Ok(()) };
         let part = (since - 1) % PIECES + 1;
@@ -298,7 +301,7 @@ impl<'a, R: Real> Trial<'a, R> {
     }
 }
 
-/// Lets the sides of a specimen press, and the plate as they do.
+/// Applies the pressure to the sides of a specimen, and the same pressure to the plate.
 fn consolidated<R: Real>(
     bed: &mut Bed<R>,
     rig: &Rig,

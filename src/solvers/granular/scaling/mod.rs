@@ -1,11 +1,13 @@
-//! Selective mass scaling: more inertia, and no more weight, for bodies too light for the time step wanted.
+//! Selective mass scaling: additional inertia, but no additional weight, for bodies too light for the required time
+//! step.
 //!
-//! A body counts as too light by its own contacts, those with other bodies counted s times. s = 2 is always enough (see
-//! `critical`), s = 1 hardly ever; the least s at which the whole network is stable is found by halving, for the sake of as
-//! little added mass as this rule can do with.
+//! A body counts as too light by its own contacts; contacts with other bodies are counted s times. s = 2 is always
+//! sufficient (see `critical`), s = 1 hardly ever. The smallest s at which the whole network is stable is found by
+//! bisection, so that the additional mass is as small as this rule allows.
 //!
-//! Gravity pulls, and dashpots by ratio refer to, the real mass: forces at rest are those without scaling, and dashpots keep
-//! their coefficients, so that a scaled body rebounds as if its damping ratio were smaller by the root of its factor.
+//! Gravity acts on the real mass, and damping ratios refer to it. So forces at rest are the forces without scaling.
+//! Dashpots keep their coefficients, so a scaled body rebounds as with a damping ratio smaller by the root of its
+//! factor.
 
 mod need;
 
@@ -19,21 +21,21 @@ use super::vector::scale;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Halvings of the share that contacts between bodies count with.
+/// Bisections of the weight of contacts between bodies.
 const HALVINGS: usize = 6;
-/// Relative tolerance of the network's limit.
+/// Relative tolerance of the network limit.
 const TOLERANCE: f64 = 2e-3;
 
-/// Bodies that one task works on. Fixed, so that threads change nothing.
+/// Bodies of one task. The number is fixed, so that the number of threads does not change the results.
 const CHUNK: usize = 512;
 
-/// How often contacts between bodies count where the longest step is sought.
+/// Weights of contacts between bodies that are tried in the search for the longest step.
 const WEIGHTS: [f64; 2] = [1.0, 1.5];
-/// Halvings of the range in which the step is sought, and its width as a factor.
+/// Bisections of the search range of the step, and its width as a factor.
 const HALVINGS_OF_STEP: usize = 9;
 const WIDEST: f64 = 16.0;
 
-/// A bed's contacts, and what they hold.
+/// The contacts of a bed, and their springs.
 struct Held<'a> {
     links: &'a [Link],
     roots: &'a [Roots],
@@ -41,9 +43,10 @@ struct Held<'a> {
 }
 
 impl Held<'_> {
-    /// Factors of inertia by which each body bears a step \[s\], its contacts with others counted `weight` times.
+    /// Factors of inertia that make a step \[s\] stable for each body; contacts with other bodies are counted `weight`
+    /// times.
     fn factors(&self, step: f64, weight: f64) -> Vec<f64> {
-        // a little more, so that the network's limit is not missed by its tolerance
+        // slightly more, so that the tolerance of the network limit is covered
         let step = step * (1.0 + TOLERANCE);
         let of = |body: usize| {
             let pencil = pencil(body, &self.roots[body], self.around.pick(body, self.links), Weight::Even(weight));
@@ -52,7 +55,8 @@ impl Held<'_> {
         (0..self.roots.len()).into_par_iter().with_min_len(CHUNK).map(of).collect()
     }
 
-    /// Factors for the longest step from `shortest` \[s\] on for which they add no more than a share of these masses.
+    /// Factors for the longest step from `shortest` \[s\] for which the additional mass is at most a share of these
+    /// masses.
     fn longest(&self, weight: f64, shortest: f64, masses: &[f64], share: f64) -> Vec<f64> {
         let most = share * masses.iter().sum::<f64>();
         let (mut low, mut high) = (shortest, shortest * WIDEST);
@@ -69,7 +73,7 @@ impl Held<'_> {
         best
     }
 
-    /// What the network bears with these factors \[s\].
+    /// The limit of the network with these factors \[s\].
     fn limit(&self, factors: &[f64]) -> f64 {
         let scaled: Vec<_> = self.roots.iter().zip(factors).map(|(r, f)| r.heavier(*f)).collect();
         let bound = super::critical::bound(self.links, &scaled, self.around).0;
@@ -77,10 +81,10 @@ impl Held<'_> {
     }
 }
 
-/// What mass scaling did.
+/// The result of mass scaling.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scaling {
-    /// The step that was wanted, and the largest stable one now \[s\].
+    /// The required step, and the largest stable step now \[s\].
     pub target: f64,
     pub limit: f64,
     /// Bodies with added inertia.
@@ -88,15 +92,16 @@ pub struct Scaling {
     /// Inertial mass added \[kg\], and its share of the mass of all bodies that move.
     pub added_mass: f64,
     pub added_share: f64,
-    /// Largest inertia over the real one, and whose.
+    /// The body with the largest ratio of inertia to real mass, and this ratio.
     pub largest: Option<(BodyId, f64)>,
 }
 
 impl<R: Real> Bed<R> {
-    /// Adds inertia to bodies until `target` \[s\] is a stable step for the contacts of now and of pairs up to `gap` \[m\] apart.
-    /// What was added before is taken off first.
+    /// Adds inertia to bodies until `target` \[s\] is a stable step for the present contacts and for contacts of pairs
+    /// up to `gap` \[m\] apart. Inertia added before is removed first.
     ///
-    /// Contacts that form later may need more: choose a gap that covers what will happen, or scale again from time to time.
+    /// Contacts that form later may need more inertia: choose a gap that covers the future motion, or scale again from
+    /// time to time.
     pub fn scale_masses(&mut self, target: f64, gap: f64) -> Result<Scaling, Failure> {
         assert!(target.is_finite() && target > 0.0, "a time step is a positive time");
         self.unscale_masses();
@@ -104,7 +109,7 @@ impl<R: Real> Bed<R> {
         let roots = self.roots();
         let around = Around::new(&links, roots.len());
         let factors = |share: f64| -> Vec<f64> {
-            // a little more, so that the network's limit is not missed by its tolerance
+            // slightly more, so that the tolerance of the network limit is covered
             let step = target * (1.0 + TOLERANCE);
             let of = |body| {
                 pencil(body, &roots[body], around.pick(body, &links), Weight::Even(share)).inertia_factor(step).max(1.0)
@@ -132,12 +137,13 @@ impl<R: Real> Bed<R> {
         Ok(self.weigh_down(&best.1, target, best.0))
     }
 
-    /// Adds inertia so that steps may be as long as can be while no more than `share` of the mass is added, and tells what the whole network
-    /// bears then: [`Scaling::limit`]. Contacts of pairs up to `gap` \[m\] apart count. What was added before is taken off first.
+    /// Adds inertia for the longest possible step with at most `share` of the mass added, and returns the limit of the
+    /// whole network: [`Scaling::limit`]. Contacts of pairs up to `gap` \[m\] apart count. Inertia added before is
+    /// removed first.
     ///
-    /// Inertia goes where a body alone needs it for some step, the longest for which the share suffices. How often contacts between bodies
-    /// count in this is tried out, by asking the network: the bed of a track takes some ten seconds. Bodies that nothing touches bear any
-    /// step: then the limit is infinite, and nothing is added.
+    /// Each body gets the inertia that it needs alone for the longest step for which the share suffices. The weight of
+    /// contacts between bodies is found by trial with the network limit: for the bed of a track this takes some ten
+    /// seconds. For bodies without contacts any step is stable: then the limit is infinite, and nothing is added.
     ///
     /// # Panics
     /// If `share` is below 0.
@@ -169,9 +175,10 @@ impl<R: Real> Bed<R> {
         self.bodies[self.index[id.0 as usize] as usize].inverse_mass == 0.0
     }
 
-    /// Adds inertia until `target` \[s\] is a stable step for the contacts of now, each body by its own with those between
-    /// bodies counted twice: more than [`Bed::scale_masses`] adds, at a fraction of its cost. A body has `least` times its
-    /// mass at least, whatever touches it: contacts that form later find it prepared. What was added before is taken off.
+    /// Adds inertia until `target` \[s\] is a stable step for the present contacts, for each body by its own contacts,
+    /// with contacts between bodies counted twice: more than [`Bed::scale_masses`] adds, at a fraction of the cost. A
+    /// body has at least `least` times its mass, independent of its contacts, so that it is prepared for contacts that
+    /// form later. Inertia added before is removed.
     pub fn hold_time_step(
         &mut self,
         target: f64,
@@ -201,7 +208,7 @@ impl<R: Real> Bed<R> {
         for (id, &factor) in factors.iter().enumerate() {
             let place = self.index[id] as usize;
             let body = &self.bodies[place];
-            // what is fixed bears any step
+            // any step is stable for fixed bodies
             if body.inverse_mass == 0.0 {
                 continue;
             }
@@ -220,7 +227,8 @@ impl<R: Real> Bed<R> {
         scaling
     }
 
-    /// Takes off what mass scaling added. Velocities stay as they are; the inertia of a clump comes back to rounding.
+    /// Removes the inertia added by mass scaling. Velocities do not change; the inertia of a clump is restored to
+    /// rounding.
     pub fn unscale_masses(&mut self) {
         for place in 0..self.bodies.len() {
             let factor = self.inertia_factor(place);
@@ -237,7 +245,7 @@ impl<R: Real> Bed<R> {
         }
     }
 
-    /// Inertial over real mass; 1 for a body that is fixed.
+    /// Inertial mass divided by real mass; 1 for a fixed body.
     fn inertia_factor(&self, place: usize) -> f64 {
         let body = &self.bodies[place];
         let real = 1.0 / body.mass;
@@ -249,7 +257,7 @@ impl<R: Real> Bed<R> {
         body.inverse_mass /= factor;
         body.inverse_inertia /= factor;
         if body.clump != SPHERE {
-            // it keeps its turning, so its angular momentum changes
+            // it keeps its angular velocity, so its angular momentum changes
             body.spin = scale(body.spin, factor);
             let clump = &mut self.clumps[body.clump as usize];
             clump.inverse_inertia = scale(clump.inverse_inertia, 1.0 / factor);

@@ -1,12 +1,14 @@
-//! Inertia for a step, contact by contact shared between its two bodies by what they need.
+//! Inertia for a time step; each contact is shared between its two bodies by their need.
 //!
-//! For a spring between two bodies and any p1, p2 > 0, |u1 - u2|^2 <= (1 + p2/p1) |u1|^2 + (1 + p1/p2) |u2|^2. So a step is stable for
-//! the whole network where every body bears its own contacts, its neighbours held, each counted 1 + p2/p1 times. Here p is how much of
-//! what a body bears its contacts take: a light grain among heavy ones then counts its contacts little more than once, and they, who have
-//! to spare, count them more. Counting twice for both (`Bed::hold_time_step`) adds two to three times as much mass for the same step.
+//! For a spring between two bodies and any p1, p2 > 0, |u1 - u2|^2 <= (1 + p2/p1) |u1|^2 + (1 + p1/p2) |u2|^2. So a
+//! step is stable for the whole network if it is stable for every body alone, with fixed neighbours and each contact
+//! counted 1 + p2/p1 times. Here p is the utilisation of a body: the demand of its contacts divided by its limit. So a
+//! light grain among heavy grains counts its contacts little more than once, and the heavy grains, which have a
+//! reserve, count them more often. Counting twice for both bodies (`Bed::hold_time_step`) adds two to three times as
+//! much mass for the same step.
 //!
-//! Sums run over the contacts of a body in the order of [`Incidence`](super::super::integrate::Incidence), which depends on who the
-//! neighbours are: the same bits however the lists were made.
+//! Sums run over the contacts of a body in the order of [`Incidence`](super::super::integrate::Incidence), which
+//! depends only on the neighbours: the result is the same bits for any lists.
 
 use super::super::bed::Bed;
 use super::super::body::SPHERE;
@@ -20,22 +22,23 @@ use super::{CHUNK, Scaling, TOLERANCE};
 use nalgebra::{Matrix3, Matrix6};
 use rayon::prelude::*;
 
-/// A body counts as loaded from the first share of what it bears to the second: a weak one leaves its neighbours something to carry.
+/// Limits of the utilisation p: at least the first share, at most the second, so that a weak body leaves a part to its
+/// neighbours.
 const SHARES: [f64; 2] = [1e-3, 0.7];
-/// A bound below this is surely below 1, whatever the rounding.
+/// A bound below this is surely below 1, for any rounding.
 const SURELY: f64 = 0.999;
 
-/// What contacts do to one body in a step of dt: sums of `a = dt^2 k + 2 dt c`, along the normal n and across, at arms r. Symmetric ones
-/// hold xx, yy, zz, xy, yz, zx.
+/// Contributions of contacts to one body in a step of dt: sums of `a = dt^2 k + 2 dt c`, along the normal n and across,
+/// at arms r. Symmetric tensors hold xx, yy, zz, xy, yz, zx.
 #[derive(Default)]
 struct Sums {
     /// a across.
     across: f64,
-    /// n n', along less across.
+    /// n n', along minus across.
     along: Symmetric,
     /// r, across.
     arm: Vec3,
-    /// (r x n) n', along less across.
+    /// (r x n) n', along minus across.
     mixed: [Vec3; 3],
     /// (r x d) (r x d)' over all directions d.
     turning: Symmetric,
@@ -43,10 +46,10 @@ struct Sums {
 
 type Symmetric = [f64; 6];
 
-/// What a contact between two pebbles does in a step of dt; nothing where they do not touch.
+/// Contribution of a contact between two pebbles in a step of dt; 0 if they do not touch.
 #[derive(Debug, Clone, Copy, Default)]
 struct Spot {
-    /// From the second to the first.
+    /// From the second pebble to the first.
     normal: [f32; 3],
     /// a along and across.
     along: f32,
@@ -60,7 +63,7 @@ fn square([x, y, z]: Vec3) -> Symmetric {
 }
 
 impl Sums {
-    /// Adds a contact that does so much along and across, at an arm.
+    /// Adds a contact with these values along and across, at an arm.
     #[inline(always)]
     fn add(&mut self, normal: Vec3, arm: Vec3, along: f64, across: f64) {
         let along = along - across;
@@ -81,7 +84,7 @@ impl Sums {
         }
     }
 
-    /// On the six motions of the body, inertia scaled to one: a step is stable where no eigenvalue is above 4.
+    /// Matrix on the six motions of the body, inertia scaled to one: a step is stable if no eigenvalue is above 4.
     fn matrix(&self, root: &Roots) -> Matrix6<f64> {
         let [xx, yy, zz, xy, yz, zx] = self.along;
         let [x, y, z] = self.arm;
@@ -111,7 +114,8 @@ impl Sums {
     }
 }
 
-/// A bound of the largest eigenvalue of what is positive: fourth root of the sum of their fourth powers, at most 1.6 times as large.
+/// An upper bound of the largest eigenvalue of a positive matrix: fourth root of the sum of the fourth powers of all
+/// eigenvalues, at most 1.6 times as large.
 pub(super) fn largest(whole: &Matrix6<f64>) -> f64 {
     let mut sum = 0.0;
     for r in 0..6 {
@@ -130,9 +134,9 @@ fn in_step(tangent: &Tangent, step: f64) -> [f64; 2] {
 }
 
 impl<R: Real> Bed<R> {
-    /// Adds inertia until `target` \[s\] is a stable step for the contacts of now, each shared by what its bodies need. A body of a surface and a
-    /// mass has `least` times that mass at least, whatever touches it: contacts that form later find it prepared. What was added before is
-    /// taken off.
+    /// Adds inertia until `target` \[s\] is a stable step for the present contacts, each shared between its bodies by
+    /// their need. A body of a surface and a mass has at least `least` times that mass, independent of its contacts, so
+    /// that it is prepared for contacts that form later. Inertia added before is removed.
     pub fn hold_time_step_by_need(
         &mut self,
         target: f64,
@@ -141,7 +145,7 @@ impl<R: Real> Bed<R> {
         assert!(target.is_finite() && target > 0.0, "a time step is a positive time");
         self.unscale_masses();
         self.reach(0.0)?;
-        // a little more, so that rounding is on the safe side
+        // slightly more, so that rounding is on the safe side
         let acting = Acting::new(self, target * (1.0 + TOLERANCE));
         let places = (0..self.bodies.len()).into_par_iter().with_min_len(CHUNK);
         let loads: Vec<f64> = places.map(|place| largest(&acting.matrix(place, |_| 1.0)) / 4.0).collect();
@@ -164,11 +168,11 @@ impl<R: Real> Bed<R> {
     }
 }
 
-/// What all contacts of a bed do in a step.
+/// The contributions of all contacts of a bed in a step.
 pub(super) struct Acting<'a, R: Real> {
     bed: &'a Bed<R>,
     step: f64,
-    /// By the places of contacts between pebbles.
+    /// By the index of contacts between pebbles.
     spots: Vec<Spot>,
 }
 
@@ -178,7 +182,8 @@ impl<'a, R: Real> Acting<'a, R> {
         Acting { bed, step, spots: places.map(|place| bed.spot(place, step)).collect() }
     }
 
-    /// What the contacts of a body, its neighbours held, do to it; `count` says how often one with another body counts.
+    /// The contributions of the contacts of a body with fixed neighbours; `count` is the weight of a contact with
+    /// another body.
     pub(super) fn matrix(&self, place: usize, count: impl Fn(u32) -> f64) -> Matrix6<f64> {
         let bed = self.bed;
         let body = &bed.bodies[place];
@@ -234,7 +239,7 @@ impl<'a, R: Real> Acting<'a, R> {
         sums.add(normal, arms[end], share * along, share * across);
     }
 
-    /// Places of the bodies that are listed near one.
+    /// Indices of the bodies listed near a body.
     fn neighbours(&self, place: usize) -> impl Iterator<Item = u32> {
         let body = &self.bed.bodies[place];
         let pebbles = body.first as usize..body.first as usize + usize::from(body.pebbles);
@@ -244,12 +249,12 @@ impl<'a, R: Real> Acting<'a, R> {
 }
 
 impl<R: Real> Bed<R> {
-    /// Contacts of a pebble, walls behind.
+    /// Contacts of a pebble, walls last.
     fn entries_of(&self, pebble: usize) -> &[u32] {
         &self.incidence.entries[self.incidence.start[pebble] as usize..self.incidence.start[pebble + 1] as usize]
     }
 
-    /// Place of the other body of a contact between two.
+    /// Index of the other body of a contact between two bodies.
     fn other(&self, entry: u32) -> u32 {
         let pebbles = if entry & 1 == 0 { &self.contacts.second } else { &self.contacts.first };
         self.owner[pebbles[(entry >> 1) as usize] as usize]

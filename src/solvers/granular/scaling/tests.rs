@@ -1,4 +1,4 @@
-//! What mass scaling changes, and what it must not.
+//! Effects of mass scaling, and values that it must not change.
 
 use super::need::{Acting, largest};
 use crate::solvers::granular::clump::{Pebble, Template};
@@ -21,7 +21,7 @@ fn law(ratio: f64) -> ContactLaw {
     })
 }
 
-/// Spheres of two sizes and clumps over a floor, walled in by periods, that fall and come to rest.
+/// Spheres of two sizes and clumps over a floor, in a periodic cell, that fall and come to rest.
 fn mixed() -> Bed<f64> {
     let length = 0.2;
     let mut bed = Bed::new(Domain::open().periodic(0, length).periodic(1, length), ContactLaws::uniform(1, law(0.3)));
@@ -52,7 +52,7 @@ fn mixed() -> Bed<f64> {
     bed
 }
 
-/// Force on the floor, mean over some steps: a sphere that still rolls hits another now and then.
+/// Mean force on the floor over some steps: a rolling sphere sometimes hits another sphere.
 fn mean_load(bed: &mut Bed<f64>, steps: u32) -> f64 {
     let floor = crate::solvers::granular::WallId(0);
     let sum: f64 = (0..steps)
@@ -81,12 +81,12 @@ fn a_lone_sphere_gets_just_the_inertia_that_it_needs() {
     let mass = bed.body_state(id).mass;
     let limit = 2.0 / (STIFFNESS / mass).sqrt();
     let scaling = bed.scale_masses(2.0 * limit, 0.0).unwrap();
-    // the limit goes with the root of inertia
+    // the limit is proportional to the root of the inertia
     assert!((scaling.largest.unwrap().1 / 4.0 - 1.0).abs() < 0.01, "{scaling:?}");
     assert!((scaling.added_share - 3.0).abs() < 0.04 && (scaling.added_mass / mass - 3.0).abs() < 0.04);
     assert!(bed.critical_step(0.0).unwrap().network.step >= 2.0 * limit);
     assert_eq!(bed.body_state(id).mass, mass, "its weight is as before");
-    // below the limit nothing is added, and all is taken back
+    // below the limit nothing is added, and earlier additions are removed
     let scaling = bed.scale_masses(0.9 * limit, 0.0).unwrap();
     assert_eq!((scaling.bodies, scaling.added_mass, scaling.largest), (0, 0.0, None));
     assert!((bed.critical_step(0.0).unwrap().network.step / limit - 1.0).abs() < 1e-3);
@@ -111,7 +111,7 @@ fn a_scaled_sphere_falls_as_any_other() {
     bed.set_time_step(1e-4);
     bed.run(1000).unwrap();
     let speed = bed.body_state(one).velocity[2];
-    // its weight now moves more inertia: free fall is slower by the factor, which is why only what rests may be scaled
+    // its weight now moves more inertia: free fall is slower by the factor, so only bodies at rest may be scaled
     let factor = scaling.largest.unwrap().1;
     assert!((speed / (-9.81 * 0.1 / factor) - 1.0).abs() < 1e-3, "{speed} {factor}");
 }
@@ -126,11 +126,12 @@ fn a_scaled_bed_is_stable_at_the_target_and_weighs_the_same() {
     let scaling = bed.scale_masses(target, 1e-5).unwrap();
     assert!(scaling.bodies > 0 && scaling.bodies < bed.len() && scaling.limit >= target);
     assert!(bed.critical_step(1e-5).unwrap().network.step >= target);
-    // forces at rest stay as they are
+    // forces at rest do not change
     bed.set_time_step(target);
     bed.run(10_000).unwrap();
     let load = mean_load(&mut bed, 10_000);
-    // what still rolls carries the floor's mean by some thousandths; the added mass, were it heavy, by far more
+    // rolling spheres change the mean force on the floor by some thousandths; the additional mass, if it had weight, by
+    // far more
     assert!((load / -weight(&bed) - 1.0).abs() < 5e-3 && scaling.added_share > 0.02, "{load} {scaling:?}");
     let after = bed.snapshot().unwrap().contacts;
     let load =
@@ -158,7 +159,8 @@ fn scaling_and_back_changes_nothing() {
     }
 }
 
-/// A held clump was made heavier at every look and never lighter again: after five hundred axles its spin was no number.
+/// Regression: a held clump was made heavier at every check and never lighter again; after five hundred axles its spin
+/// was not a number.
 #[test]
 fn what_is_fixed_is_not_scaled() {
     let mut bed = mixed();
@@ -188,14 +190,15 @@ fn the_longest_step_for_a_share_of_mass_is_one_that_the_network_bears() {
         last = held.limit;
     }
     assert!(last > 1.5 * plain, "{last} {plain}");
-    // what touches nothing bears any step
+    // any step is stable without contacts
     let mut alone = Bed::<f64>::new(Domain::open(), ContactLaws::uniform(1, law(0.0)));
     alone.add_sphere(&Sphere { centre: [0.0; 3], radius: 0.01, density: 2700.0, surface: 0 });
     let held = alone.hold_longest_step(0.02, 0.0).unwrap();
     assert_eq!((held.limit, held.bodies), (f64::INFINITY, 0));
 }
 
-/// Every grain's own contacts, found without a list of all, are those of that list in its order; what its traces allow its pencil allows.
+/// The contacts of a single grain, found without the list of all contacts, equal its contacts in that list, in the same
+/// order; a step allowed by the traces is allowed by the pencil.
 #[test]
 fn the_own_contacts_of_a_body_are_those_among_all() {
     let mut bed = mixed();
@@ -216,8 +219,8 @@ fn the_own_contacts_of_a_body_are_those_among_all() {
     assert!(sure > allowed / 4 && allowed < 3 * roots.len(), "{sure} of {allowed} without their pencils");
 }
 
-/// What a body's contacts do to it, summed by blocks, is the pencil at that step; the network bears a step held by need, and less mass is
-/// added for it than with contacts counted twice.
+/// The contributions of the contacts of a body, summed by blocks, equal the pencil at that step. A step held by need is
+/// stable for the network, with less additional mass than if contacts count twice.
 #[test]
 fn contacts_shared_by_need_hold_a_step_with_less_mass() {
     let bed = mixed();

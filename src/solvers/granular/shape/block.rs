@@ -1,9 +1,10 @@
-//! A sphere on a solid block: one contact, with the face, edge or corner whose region of space holds the centre.
+//! A sphere on a solid block: one contact, with the face, edge or corner whose region of space contains the centre.
 
 use super::touch::Touch;
 use nalgebra::Vector3;
 
-/// Which of the 26 regions round the block: along each axis below (0), beside (1) or above (2) it. 13 is the inside.
+/// The number of one of the 26 regions around the block: along each axis below (0), beside (1) or above (2) the block.
+/// 13 is the inside.
 fn feature(sides: Vector3<f64>) -> u32 {
     let digit = |s: f64| if s < 0.0 { 0 } else { u32::from(s > 0.0) + 1 };
     digit(sides.x) + 3 * digit(sides.y) + 9 * digit(sides.z)
@@ -12,7 +13,7 @@ fn feature(sides: Vector3<f64>) -> u32 {
 pub(super) fn touch(half: &Vector3<f64>, centre: &Vector3<f64>, reach: f64) -> Option<Touch> {
     let away = centre - centre.zip_map(half, |c, h| c.clamp(-h, h));
     let distance = away.norm();
-    // a distance whose square is no number any more is none
+    // a distance whose square is not a finite number does not count
     if distance > 0.0 {
         return (distance < reach).then(|| Touch { normal: away / distance, distance, feature: feature(away) });
     }

@@ -1,30 +1,31 @@
-//! Faults of a mesh, all of them at once, each with its count, the first few places and a way out.
+//! Faults of a mesh: all at once, each with its number, the first few places and a remedy.
 
 use super::triangles::{MeshKind, area_vector, half_edges, volume, winding};
 use nalgebra::Vector3;
 use std::fmt;
 
-/// How many places of a fault are named.
+/// Number of places of a fault that are named.
 const NAMED: usize = 3;
 
-/// A facet lower than this part of its longest edge has no direction that can be trusted.
+/// A facet lower than this share of its longest edge has no reliable direction.
 const THINNEST: f64 = 1e-9;
 
-/// Facets, edges and corners are numbered together in 32 bits; a mesh of n facets has fewer than 3 n + 3 n of the others.
+/// Facets, edges and corners are numbered together in 32 bits; a mesh of n facets has fewer than 3 n edges and fewer
+/// than 3 n corners.
 const MOST_FACETS: usize = 600_000_000;
 
-/// Why triangles make no mesh.
+/// Why triangles do not form a valid mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshError {
     pub faults: Vec<MeshFault>,
 }
 
-/// Everything of one kind that is wrong.
+/// All faults of one kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshFault {
     pub kind: FaultKind,
     pub count: usize,
-    /// The first few.
+    /// The first few places.
     pub places: Vec<Place>,
 }
 
@@ -36,7 +37,7 @@ pub enum FaultKind {
     TooMany,
     /// A vertex that is not a number.
     NonFinite,
-    /// A triangle of a vertex that does not exist.
+    /// A triangle with a vertex that does not exist.
     OutOfRange,
     /// A triangle without area.
     Degenerate,
@@ -48,20 +49,20 @@ pub enum FaultKind {
     Winding,
     /// A closed part whose normals point the wrong way.
     InsideOut,
-    /// A closed part that encloses nothing.
+    /// A closed part without volume.
     Flat,
 }
 
-/// Where a fault is.
+/// The place of a fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// Number of the triangle, or of the vertex that is not a number, as given.
+    /// Number of the triangle, or number of the vertex that is not a number, in the input.
     pub number: u32,
     /// m.
     pub at: Vector3<f64>,
 }
 
-/// Faults of triangles as given; `places` names the first vertex at the place of each.
+/// Faults of the input triangles; `places` gives, for each vertex, the first vertex at the same place.
 pub(super) fn check(
     vertices: &[Vector3<f64>],
     triangles: &[[u32; 3]],
@@ -84,7 +85,7 @@ pub(super) fn check(
             found.add(FaultKind::OutOfRange, i as u32, known.copied().unwrap_or_default());
         }
     }
-    // without all vertices, what else seems wrong would only follow from that
+    // if vertices are missing, further faults would only be consequences
     if found.faults.is_empty() {
         let welded: Vec<_> = triangles.iter().map(|t| t.map(|v| places[v as usize])).collect();
         thin_facets(vertices, &welded, &mut found);
@@ -120,7 +121,7 @@ fn thin_facets(vertices: &[Vector3<f64>], triangles: &[[u32; 3]], found: &mut Fo
         let [a, b, c] = corners.map(|v| vertices[v as usize]);
         let longest = (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared());
         let twice = 2.0 * area_vector(vertices, corners).norm();
-        // false for an area that leaves the range of numbers as well
+        // also false for an area out of the range of numbers
         if !(twice > THINNEST * longest && twice.is_finite()) {
             found.add(FaultKind::Degenerate, i as u32, (a + b + c) / 3.0);
         }
@@ -129,7 +130,7 @@ fn thin_facets(vertices: &[Vector3<f64>], triangles: &[[u32; 3]], found: &mut Fo
 
 fn edges(vertices: &[Vector3<f64>], triangles: &[[u32; 3]], kind: MeshKind, found: &mut Found) {
     let closed = matches!(kind, MeshKind::Solid | MeshKind::Container);
-    // a triangle that welding drew together is no side of anything
+    // a triangle that collapsed by welding is not a side of anything
     let real = |t: &[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
     let mut sides = half_edges(triangles);
     sides.retain(|s| real(&triangles[s.facet as usize]));
@@ -146,7 +147,7 @@ fn edges(vertices: &[Vector3<f64>], triangles: &[[u32; 3]], kind: MeshKind, foun
     }
 }
 
-/// A part of a closed mesh that edges hold together.
+/// A part of a closed mesh that is connected by edges.
 struct Part {
     triangles: Vec<[u32; 3]>,
     facet: u32,
@@ -162,7 +163,8 @@ impl Part {
     }
 }
 
-/// Every part must face the right way: the outermost as the kind says, one inside another against that one.
+/// Every part must face the right way: the outermost part by the kind of the mesh, a part inside another part opposite
+/// to it.
 fn parts(vertices: &[Vector3<f64>], triangles: &[[u32; 3]], kind: MeshKind, found: &mut Found) {
     let parts = connected(vertices, triangles);
     for (i, part) in parts.iter().enumerate() {
@@ -190,7 +192,7 @@ fn connected(vertices: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Vec<Part> {
     }
     for pair in half_edges(triangles).windows(2).filter(|pair| pair[0].ends == pair[1].ends) {
         let (a, b) = (root(&mut parent, pair[0].facet), root(&mut parent, pair[1].facet));
-        // the lowest facet stands for its part
+        // the facet with the lowest number represents its part
         parent[a.max(b) as usize] = a.min(b);
     }
     let mut number = vec![usize::MAX; triangles.len()];
@@ -219,18 +221,18 @@ impl MeshError {
 }
 
 impl FaultKind {
-    /// What one of them is, what several are, and what to do.
+    /// The words for one fault and for several faults, and the remedy.
     fn words(self) -> [&'static str; 3] {
         match self {
-            FaultKind::Empty => ["mesh without triangles", "", "give one at least"],
-            FaultKind::TooMany => ["mesh of too many triangles", "", "make it coarser or cut it into several walls"],
+            FaultKind::Empty => ["mesh without triangles", "", "give at least one triangle"],
+            FaultKind::TooMany => ["mesh with too many triangles", "", "make it coarser or cut it into several walls"],
             FaultKind::NonFinite => {
                 ["vertex that is not a number", "vertices that are not numbers", "correct the file"]
             }
             FaultKind::OutOfRange => [
-                "triangle of a vertex that does not exist",
-                "triangles of vertices that do not exist",
-                "count vertices from 0, as far as there are any",
+                "triangle with a vertex that does not exist",
+                "triangles with vertices that do not exist",
+                "count vertices from 0 to the number of vertices less 1",
             ],
             FaultKind::Degenerate => [
                 "triangle without area",
@@ -240,12 +242,12 @@ impl FaultKind {
             FaultKind::OpenEdge => [
                 "open edge",
                 "open edges",
-                "close the hole, give vertices that should be one the same numbers, or make it a sheet",
+                "close the hole, give coincident vertices the same coordinates, or make it a sheet",
             ],
             FaultKind::NonManifoldEdge => [
-                "edge of more than two triangles",
-                "edges of more than two triangles",
-                "remove double triangles, or cut the mesh into several walls there",
+                "edge shared by more than two triangles",
+                "edges shared by more than two triangles",
+                "remove duplicate triangles, or cut the mesh into several walls there",
             ],
             FaultKind::Winding => [
                 "edge between triangles that face opposite ways",
@@ -258,7 +260,7 @@ impl FaultKind {
                 "swap two vertices of all its triangles; a body faces outward, a container and a hole in a body inward",
             ],
             FaultKind::Flat => {
-                ["closed part without volume", "closed parts without volume", "make it a sheet of both sides"]
+                ["closed part without volume", "closed parts without volume", "make it a two-sided sheet"]
             }
         }
     }

@@ -1,8 +1,8 @@
-//! Contacts of a sphere with a mesh: local minima of the distance, each once.
+//! Contacts of a sphere with a mesh: local minima of the distance, each counted once.
 //!
-//! With c the centre, an edge point q is a minimum where (c - q).t <= 0 for the directions t into the facets beside it, a
-//! corner where (c - q).u <= 0 along all edges that leave it. Each test has a slack above round-off, so that no place falls
-//! between two of them; what two of them find is one contact, the face before the edge before the corner.
+//! With c the centre, an edge point q is a minimum if (c - q).t <= 0 for the directions t into the adjacent facets; a
+//! corner is a minimum if (c - q).u <= 0 along all edges from the corner. Each test has a slack above rounding, so that
+//! no point falls between two tests. If two tests find the same contact it counts once, face before edge before corner.
 
 use super::mesh::Mesh;
 use super::topology::{Facet, NONE};
@@ -10,19 +10,20 @@ use super::touch::Touch;
 use super::triangles::MeshKind;
 use nalgebra::Vector3;
 
-/// Slack of a test, as a part of the largest coordinate.
+/// Slack of a test, as a share of the largest coordinate.
 const SLACK: f64 = 1e-12;
 
-/// Centres nearer than this, in slacks, lie on the surface: the direction from it to them is only round-off.
+/// Centres nearer than this, in units of the slack, lie on the surface: the direction from the surface to the centre is
+/// only rounding.
 const ON_SURFACE: f64 = 1e3;
 
-/// Contacts whose normals turn by less than this (cosine, 2.6 degrees) are one. In a valley that turns by a, the second
-/// face comes into touch with the overlap d - r a^2/2 at once, d that of the first: a jump if a < sqrt(2 d/r), which is
-/// this angle for d = r/1000.
+/// Contacts whose normals differ by less than this angle (as cosine; 2.6 degrees) are one contact. In a valley with an
+/// angle a, the second face comes into contact with the overlap d - r a^2/2 at once, if d is the overlap of the first
+/// face. This is a jump if a < sqrt(2 d/r); the angle here is this limit for d = r/1000.
 const ONE_DIRECTION: f64 = 0.999;
 
-/// How far apart two borders may run and still join, as a part of the largest coordinate: above the rounding of files
-/// in single precision.
+/// Largest distance between two borders that still count as joined, as a share of the largest coordinate: above the
+/// rounding of files in single precision.
 const JOINED: f64 = 1e-6;
 
 impl Mesh {
@@ -121,8 +122,8 @@ impl Mesh {
         }
     }
 
-    /// Whether the surface goes on from a place of its border, `away` from the centre, to places nearer to the centre:
-    /// by a facet that does not share its corners there, but divides the common line in another way.
+    /// Whether the surface continues from a point of its border, `away` from the centre, to points nearer to the
+    /// centre: by a facet that does not share the corners there, but divides the common line in another way.
     fn goes_on(&self, centre: &Vector3<f64>, away: &Vector3<f64>, facets: &[u32]) -> bool {
         let (place, joined) = (centre - away, JOINED * self.extent);
         let nearer = away.norm_squared() - self.slack(centre).powi(2);
@@ -132,7 +133,7 @@ impl Mesh {
             .any(|facet| distance_squared(facet, &place) <= joined * joined && distance_squared(facet, centre) < nearer)
     }
 
-    /// Contact with an edge or corner from which the centre lies `away`.
+    /// Contact with an edge or corner; `away` is the vector from there to the centre.
     fn sharp(
         &self,
         away: Vector3<f64>,
@@ -158,7 +159,7 @@ impl Facet {
         self.normal.dot(&(point - self.places[0]))
     }
 
-    /// How far a point stands inward of each edge.
+    /// Distance of a point inward from each edge.
     fn sides(&self, point: &Vector3<f64>) -> [f64; 3] {
         [0, 1, 2].map(|k| self.inward[k].dot(&(point - self.places[k])))
     }
@@ -168,8 +169,8 @@ fn has(touches: &[Touch], feature: u32) -> bool {
     touches.iter().any(|touch| touch.feature == feature)
 }
 
-/// Leaves the way out where the centre lies inside or on the surface, else what lies in front, nearest first, one in
-/// each direction.
+/// If the centre lies inside or on the surface, keeps the contact towards the outside. Otherwise keeps the contacts in
+/// front, nearest first, one per direction.
 fn distinct(out: &mut Vec<Touch>, on_surface: f64) {
     out.sort_unstable_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()).then(a.feature.cmp(&b.feature)));
     if out.first().is_some_and(|nearest| nearest.distance <= on_surface) {
@@ -187,7 +188,7 @@ fn distinct(out: &mut Vec<Touch>, on_surface: f64) {
     out.truncate(kept);
 }
 
-/// From a point to the nearest of a facet, m2.
+/// Squared distance from a point to the nearest point of a facet, m2.
 fn distance_squared(facet: &Facet, point: &Vector3<f64>) -> f64 {
     let sides = facet.sides(point);
     if sides.iter().all(|s| *s >= 0.0) {

@@ -1,11 +1,11 @@
-//! How far a point is from a mesh, and the nearest place of it.
+//! Distance of a point from a mesh, and the nearest point of the mesh.
 
 use super::mesh::Mesh;
 use super::topology::Facet;
 use nalgebra::Vector3;
 use std::cell::Cell;
 
-/// The place of a mesh that is nearest to a point.
+/// The point of a mesh that is nearest to a given point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
     /// m.
@@ -16,7 +16,7 @@ pub struct Nearest {
 }
 
 impl Mesh {
-    /// The nearest place of the surface that is nearer to the point than `within` (m); `None` where nothing is.
+    /// The nearest point of the surface within `within` (m) of the point; `None` if there is none.
     pub fn nearest(&self, point: &Vector3<f64>, within: f64) -> Option<Nearest> {
         let square = Cell::new(within * within);
         let mut nearest = None;
@@ -35,7 +35,7 @@ impl Mesh {
         nearest
     }
 
-    /// Unit normal of a facet, out of what is solid.
+    /// Unit normal of a facet, out of the solid.
     pub fn normal(&self, facet: u32) -> Vector3<f64> {
         self.surface.facets[facet as usize].normal
     }
@@ -50,7 +50,7 @@ fn nearest_place(facet: &Facet, point: &Vector3<f64>) -> Vector3<f64> {
         let (start, along) = (facet.places[k], facet.places[(k + 1) % 3] - facet.places[k]);
         start + along * ((point - start).dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
     };
-    // the nearest place lies on an edge that faces the point
+    // the nearest point lies on an edge that faces the point
     let mut best = (f64::INFINITY, facet.places[0]);
     for k in (0..3).filter(|k| from_edge(*k) < 0.0) {
         let at = on_edge(k);

@@ -1,4 +1,4 @@
-//! Meshes of simple bodies, solid, round the origin.
+//! Meshes of simple solids around the origin.
 
 use super::check::{FaultKind, MeshError};
 use super::mesh::Mesh;
@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
-/// A sphere of five million facets is the finest that is made.
+/// Largest number of subdivisions; it gives a sphere of five million facets.
 const MOST_SUBDIVISIONS: u32 = 9;
 
 impl Mesh {
@@ -57,9 +57,9 @@ impl Mesh {
     }
 }
 
-/// Triples of neighbours, turned outward.
+/// Triples of neighbours, with normals outward.
 fn icosahedron(vertices: &[Vector3<f64>]) -> Vec<[u32; 3]> {
-    // neighbours stand at an angle of 63 degrees, all others above 116
+    // neighbours are at an angle of 63 degrees, all other pairs above 116
     let near = |a: u32, b: u32| vertices[a as usize].dot(&vertices[b as usize]) > 0.0;
     let mut triangles = Vec::new();
     for (a, b, c) in (0..12).flat_map(|a| (a + 1..12).flat_map(move |b| (b + 1..12).map(move |c| (a, b, c)))) {
@@ -71,7 +71,7 @@ fn icosahedron(vertices: &[Vector3<f64>]) -> Vec<[u32; 3]> {
     triangles
 }
 
-/// Four triangles for one, the new corners on the unit sphere.
+/// Splits each triangle into four; the new corners lie on the unit sphere.
 fn split(vertices: &mut Vec<Vector3<f64>>, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let mut middles = HashMap::new();
     let mut middle = |a: u32, b: u32| {

@@ -1,21 +1,22 @@
-//! Whether a point lies inside a closed mesh: how often its surface winds round the point.
+//! Whether a point lies inside a closed mesh: the winding number of the surface around the point.
 
 use super::mesh::Mesh;
 use super::triangles::{MeshKind, winding};
 use nalgebra::Vector3;
 
-/// Directions in which a ray is sent, none along an axis or a common diagonal.
+/// Directions of the rays, none along an axis or a common diagonal.
 const DIRECTIONS: [[f64; 3]; 4] =
     [[0.8017, 0.2672, 0.5345], [-0.2113, 0.7731, 0.5981], [0.3713, -0.5571, 0.7428], [-0.6247, -0.4685, -0.6247]];
 
-/// A ray that passes an edge, or starts in front of a facet, this close in facets' sizes says nothing certain.
+/// A ray that passes an edge, or starts in front of a facet, closer than this (in facet sizes) gives no reliable
+/// result.
 const CERTAIN: f64 = 1e-9;
 
-/// Nor does one that runs along a facet, by the sine of the angle between them.
+/// Nor does a ray nearly parallel to a facet, by the sine of the angle between them.
 const ALONG: f64 = 1e-6;
 
 impl Mesh {
-    /// Whether a point lies in what is solid; never in a sheet.
+    /// Whether a point lies inside the solid; never inside a sheet.
     pub fn contains(&self, point: &Vector3<f64>) -> bool {
         match self.kind {
             MeshKind::OneSided | MeshKind::TwoSided => false,
@@ -24,7 +25,7 @@ impl Mesh {
         }
     }
 
-    /// 1 in a solid, -1 in the cavity of a container, 0 outside; more where bodies of one mesh overlap.
+    /// 1 in a solid, -1 in the cavity of a container, 0 outside; larger if bodies of one mesh overlap.
     fn winding(&self, point: &Vector3<f64>) -> i64 {
         let [low, high] = self.bounds();
         if (0..3).any(|k| point[k] < low[k] || point[k] > high[k]) {
@@ -34,7 +35,7 @@ impl Mesh {
         by_ray.unwrap_or_else(|| winding(&self.vertices, self.triangles.iter(), point))
     }
 
-    /// How often a ray leaves the surface less how often it enters; `None` where that is not certain.
+    /// Number of exits of a ray through the surface minus number of entries; `None` if that is not reliable.
     fn crossings(&self, point: &Vector3<f64>, direction: &Vector3<f64>) -> Option<i64> {
         let inverse = direction.map(f64::recip);
         let enter = |low: &Vector3<f64>, high: &Vector3<f64>| {
@@ -50,7 +51,7 @@ impl Mesh {
     }
 }
 
-/// 1 where the ray leaves through the triangle, -1 where it enters, 0 where it passes it by (Moeller and Trumbore 1997).
+/// 1 if the ray leaves through the triangle, -1 if it enters, 0 if it passes the triangle (Moeller and Trumbore 1997).
 fn crossing(places: &[Vector3<f64>; 3], point: &Vector3<f64>, direction: &Vector3<f64>) -> Option<i64> {
     let (first, second, from) = (places[1] - places[0], places[2] - places[0], point - places[0]);
     let normal = first.cross(&second);

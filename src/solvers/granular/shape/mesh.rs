@@ -1,4 +1,4 @@
-//! A surface of triangles: checked once, with its edges, corners and search tree built once.
+//! A surface of triangles: checked once; edges, corners and search tree are built once.
 
 use super::check::{MeshError, check};
 use super::topology::MeshSurface;
@@ -8,8 +8,8 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-/// Triangles without faults. A facet keeps the number of its triangle. Sheets need not share vertices where they join:
-/// borders closer than a millionth of the largest coordinate are taken for joined.
+/// Triangles without faults. A facet keeps the number of its triangle. Sheets need not share vertices at their joints:
+/// borders closer than a millionth of the largest coordinate count as joined.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Parts", into = "Parts")]
 pub struct Mesh {
@@ -18,11 +18,11 @@ pub struct Mesh {
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) surface: MeshSurface,
     pub(super) tree: Tree,
-    /// The largest coordinate, m: round-off is measured by it.
+    /// The largest coordinate, m: the scale of rounding.
     pub(super) extent: f64,
 }
 
-/// A mesh as it is stored.
+/// A mesh in its stored form.
 #[derive(Serialize, Deserialize)]
 struct Parts {
     kind: MeshKind,
@@ -45,8 +45,8 @@ impl TryFrom<Parts> for Mesh {
 }
 
 impl Mesh {
-    /// A mesh of vertices (m) and of triangles of three vertices each. Vertices at the same place become one, and those
-    /// that no triangle uses are left out. Fails with all faults at once.
+    /// A mesh of vertices (m) and of triangles with three vertices each. Vertices at the same place become one, and
+    /// unused vertices are left out. Fails with all faults at once.
     pub fn new(vertices: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>, kind: MeshKind) -> Result<Self, MeshError> {
         let places = weld(&vertices);
         check(&vertices, &triangles, &places, kind)?;
@@ -63,7 +63,7 @@ impl Mesh {
         Ok(Self::build(used, renumbered, kind))
     }
 
-    /// From parts without faults.
+    /// A mesh from valid parts.
     fn build(vertices: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>, kind: MeshKind) -> Self {
         let surface = MeshSurface::new(&vertices, &triangles);
         let tree = Tree::new(&vertices, &triangles);
@@ -80,12 +80,12 @@ impl Mesh {
         &self.vertices
     }
 
-    /// Three vertices a facet.
+    /// Three vertices per facet.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// The same triangles with the other side in front: a solid becomes a container and a container a solid.
+    /// The same triangles with the opposite orientation: a solid becomes a container and a container a solid.
     pub fn flipped(&self) -> Self {
         let kind = match self.kind {
             MeshKind::Solid => MeshKind::Container,
@@ -101,18 +101,18 @@ impl Mesh {
         self.tree.bounds()
     }
 
-    /// Area of the facets, m2, one side of a sheet.
+    /// Area of the facets, m2; for a sheet, of one side.
     pub fn area(&self) -> f64 {
         self.triangles.iter().map(|t| area_vector(&self.vertices, t).norm()).sum()
     }
 
-    /// Volume that the facets enclose, m3: positive for a solid, negative for a container, without meaning for a sheet.
+    /// Volume enclosed by the facets, m3: positive for a solid, negative for a container, without meaning for a sheet.
     pub fn volume(&self) -> f64 {
         volume(&self.vertices, self.triangles.iter())
     }
 }
 
-/// For every vertex the first one at the same place.
+/// For every vertex, the first vertex at the same place.
 fn weld(vertices: &[Vector3<f64>]) -> Vec<u32> {
     let mut first = HashMap::new();
     let place = |v: &Vector3<f64>| [v.x, v.y, v.z].map(|x| (x + 0.0).to_bits());

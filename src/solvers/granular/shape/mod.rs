@@ -1,8 +1,9 @@
-//! Surfaces that a sphere can touch, each in the frame of its own wall: a plane, a block, a mesh of triangles. Lengths in m.
+//! Surfaces that a sphere can touch, each in the frame of its wall: a plane, a block, a mesh of triangles. Lengths in
+//! m.
 //!
-//! A contact is a local minimum of the distance from the sphere's centre to the surface. So a face touches where the centre
-//! projects into it, an edge where no face beside it comes closer, a corner where nothing around it does. Two faces of a
-//! valley are two contacts; a flat face is one, however it is cut into triangles.
+//! A contact is a local minimum of the distance from the centre of the sphere to the surface. So a face is touched if
+//! the centre projects into it, an edge if no adjacent face is closer, a corner if no adjacent edge or face is closer.
+//! Two faces of a valley give two contacts; a flat face gives one contact, for any division into triangles.
 
 mod block;
 mod check;
@@ -32,7 +33,7 @@ pub use triangles::MeshKind;
 #[cfg(test)]
 mod tests;
 
-/// The surface of a wall in the wall's own frame.
+/// The surface of a wall in the frame of the wall.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Shape {
     /// A plane through the origin; the solid lies behind its unit normal.
@@ -43,10 +44,10 @@ pub enum Shape {
     Mesh(Mesh),
 }
 
-/// A plane or a block whose numbers describe none.
+/// Invalid numbers for a plane or a block.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ShapeError {
-    /// The normal of a plane has no direction, or is not a unit vector where one is needed.
+    /// The normal of a plane has no direction, or is not a unit vector although one is required.
     Normal { normal: Vector3<f64> },
     /// A half length (m) of a block is not a positive number.
     HalfLength { half: Vector3<f64> },
@@ -55,7 +56,7 @@ pub enum ShapeError {
 impl Shape {
     /// The plane with a normal of any length.
     pub fn plane(normal: Vector3<f64>) -> Result<Self, ShapeError> {
-        // by the largest component first, so that neither large nor small vectors leave the range of numbers
+        // divided by the largest component first, so that large and small vectors stay in the range of numbers
         let scaled = normal / normal.amax();
         let shape = Shape::Plane { normal: scaled / scaled.norm() };
         shape.check().map(|()| shape).map_err(|_| ShapeError::Normal { normal })
@@ -82,12 +83,12 @@ impl Shape {
         }
     }
 
-    /// Every distinct contact of a sphere of radius `reach` (m) whose centre is there, into `out`, which is emptied first:
-    /// nearest first, in an order that does not depend on that of `facets`.
+    /// Finds every distinct contact of a sphere of radius `reach` (m) with this centre. The contacts go into `out`,
+    /// which is emptied first: nearest first, in an order that does not depend on the order of `facets`.
     ///
-    /// For a mesh, `facets` must hold all that `near` finds with this reach, and may hold more; a plane and a block need
-    /// none. A centre inside gets one contact, the way out: at any depth of a plane or a block, to a depth of `reach` of a
-    /// mesh or a one-sided sheet.
+    /// For a mesh, `facets` must contain all facets that `near` finds with this reach, and may contain more; a plane
+    /// and a block need none. A centre inside the solid gets one contact, towards the outside: at any depth for a plane
+    /// or a block, up to a depth of `reach` for a mesh or a one-sided sheet.
     pub fn touches(&self, centre: &Vector3<f64>, reach: f64, facets: &[u32], out: &mut Vec<Touch>) {
         out.clear();
         match self {
@@ -97,8 +98,8 @@ impl Shape {
         }
     }
 
-    /// Whether the surface comes within `reach` (m) of the centre, or the centre lies behind a plane or in a block; of a
-    /// mesh, `facets` then holds those that do. It is emptied first.
+    /// Whether the surface comes within `reach` (m) of the centre, or the centre lies behind a plane or in a block. For
+    /// a mesh, `facets` then contains the facets within reach; it is emptied first.
     pub fn near(&self, centre: &Vector3<f64>, reach: f64, facets: &mut Vec<u32>) -> bool {
         facets.clear();
         match self {
@@ -108,8 +109,8 @@ impl Shape {
         }
     }
 
-    /// Whether a point lies in what is solid: behind a plane, in a block or a closed mesh, outside the cavity of a
-    /// container. Nothing lies in a sheet.
+    /// Whether a point lies inside the solid: behind a plane, in a block or a closed mesh, outside the cavity of a
+    /// container. No point lies inside a sheet.
     pub fn contains(&self, point: &Vector3<f64>) -> bool {
         match self {
             Shape::Plane { normal } => normal.dot(point) < 0.0,
@@ -118,7 +119,7 @@ impl Shape {
         }
     }
 
-    /// Lowest and highest corner of the surface's bounding box, m; `None` for a plane, which has no end.
+    /// Lowest and highest corner of the bounding box of the surface, m; `None` for a plane, which is infinite.
     pub fn bounds(&self) -> Option<[Vector3<f64>; 2]> {
         match self {
             Shape::Plane { .. } => None,
@@ -127,7 +128,7 @@ impl Shape {
         }
     }
 
-    /// Area of the surface, m2, one side of a sheet; infinite for a plane.
+    /// Area of the surface, m2; for a sheet, of one side; infinite for a plane.
     pub fn area(&self) -> f64 {
         match self {
             Shape::Plane { .. } => f64::INFINITY,

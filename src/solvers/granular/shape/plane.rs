@@ -1,4 +1,4 @@
-//! A sphere on a plane through the origin, the solid behind its normal.
+//! A sphere on a plane through the origin; the solid is behind the normal.
 
 use super::touch::Touch;
 use nalgebra::Vector3;

@@ -1,13 +1,13 @@
-//! Facets, edges and corners of a surface: who lies beside whom, and the directions that decide which of them is touched.
+//! Facets, edges and corners of a surface: their neighbours, and the directions that decide which of them is touched.
 
 use super::triangles::{area_vector, half_edges};
 use nalgebra::Vector3;
 
-/// No facet beyond the border of a sheet.
+/// Stands for the missing facet at the border of a sheet.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// How far two facets may turn against each other, rad, and still be one flat face: the gap that this opens between them
-/// is below the slack of `contact`.
+/// Largest angle between two facets, rad, that still form one flat face: the gap by this angle is below the slack of
+/// `contact`.
 const FLAT: f64 = 1e-13;
 
 #[derive(Debug, Clone, PartialEq)]
@@ -15,7 +15,7 @@ pub(super) struct MeshSurface {
     pub facets: Vec<Facet>,
     pub edges: Vec<Edge>,
     pub corners: Vec<MeshCorner>,
-    /// Edges that leave a corner, those of one corner side by side.
+    /// Edges from the corners; edges from the same corner are contiguous.
     pub spokes: Vec<Spoke>,
 }
 
@@ -26,7 +26,7 @@ pub(super) struct Facet {
     /// Edge k runs from corner k to the next.
     pub edges: [u32; 3],
     pub normal: Vector3<f64>,
-    /// Unit, in the facet's plane, from edge k inward.
+    /// Unit, in the plane of the facet, from edge k inward.
     pub inward: [Vector3<f64>; 3],
 }
 
@@ -35,11 +35,11 @@ pub(super) struct Edge {
     pub ends: [Vector3<f64>; 2],
     /// Unit, from the first end to the second.
     pub direction: Vector3<f64>,
-    /// The second is `NONE` on a border.
+    /// The second is `NONE` at a border.
     pub facets: [u32; 2],
-    /// Into the facets from the edge; zero where there is none.
+    /// Directions from the edge into the facets; zero if a facet is missing.
     pub inward: [Vector3<f64>; 2],
-    /// Sum of the facets' normals: who stands on its side stands in front (Baerentzen and Aanaes 2005, section 3).
+    /// Sum of the normals of the facets: a point on its side is in front (Baerentzen and Aanaes 2005, section 3).
     pub normal: Vector3<f64>,
     /// Inside a flat face.
     pub flat: bool,
@@ -50,7 +50,7 @@ pub(super) struct MeshCorner {
     pub place: Vector3<f64>,
     /// Range in the spokes.
     pub spokes: [u32; 2],
-    /// Sum of the facets' normals, each by its angle here (Baerentzen and Aanaes 2005, section 3).
+    /// Sum of the normals of the facets, each weighted by its angle here (Baerentzen and Aanaes 2005, section 3).
     pub normal: Vector3<f64>,
     pub flat: bool,
     pub border: bool,
@@ -80,7 +80,7 @@ impl MeshSurface {
         Self { facets, edges, corners, spokes }
     }
 
-    /// The number of an edge among the features, which are facets, then edges, then corners.
+    /// The number of an edge among the features: facets, then edges, then corners.
     pub fn edge_feature(&self, edge: u32) -> u32 {
         self.facets.len() as u32 + edge
     }

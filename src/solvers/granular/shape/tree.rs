@@ -1,4 +1,4 @@
-//! A tree of boxes over the facets of a mesh, for searches that must not look at all of them.
+//! A tree of boxes over the facets of a mesh, for searches that need not check all facets.
 
 use nalgebra::Vector3;
 
@@ -10,9 +10,9 @@ const DEPTH: usize = 64;
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Tree {
-    /// A parent stands before its first half, that before its second.
+    /// A parent is before its first half, and the first half is before the second.
     nodes: Vec<Node>,
-    /// Facets, those of a leaf side by side.
+    /// Facets; the facets of a leaf are contiguous.
     facets: Vec<u32>,
 }
 
@@ -25,7 +25,7 @@ struct Node {
 
 #[derive(Debug, Clone, PartialEq)]
 enum Next {
-    /// The first half follows its parent, the second stands there.
+    /// The first half follows its parent, the second half begins at this index.
     Halves {
         second: u32,
     },
@@ -35,7 +35,7 @@ enum Next {
     },
 }
 
-/// A facet while the tree grows.
+/// A facet during the construction of the tree.
 struct Item {
     facet: u32,
     low: Vector3<f64>,
@@ -85,7 +85,7 @@ impl Tree {
         [self.nodes[0].low, self.nodes[0].high]
     }
 
-    /// Shows every facet in boxes that `enter` lets pass, by their lowest and highest corners.
+    /// Calls `show` for every facet in boxes that `enter` accepts, by their lowest and highest corners.
     pub fn search(&self, enter: impl Fn(&Vector3<f64>, &Vector3<f64>) -> bool, mut show: impl FnMut(u32)) {
         let mut waiting = [0u32; DEPTH];
         let mut count = 1;

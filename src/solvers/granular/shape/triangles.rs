@@ -1,16 +1,16 @@
-//! Triangles before they are a mesh: what they bound, sums over them, and which of them lie side by side.
+//! Triangles before they form a mesh: the kinds of surfaces, sums over triangles, and their common edges.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// What a surface of triangles bounds. Normals follow the right hand along a triangle's corners.
+/// The kind of a surface of triangles. Normals follow the right-hand rule along the corners of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MeshKind {
-    /// A closed body, normals outward; spheres touch it from outside. Several bodies may make one mesh as long as they do
-    /// not cut each other.
+    /// A closed body, normals outward; spheres touch it from outside. Several bodies may form one mesh if they do not
+    /// intersect each other.
     Solid,
-    /// A closed cavity, normals inward; spheres live in it.
+    /// A closed cavity, normals inward; spheres are inside it.
     Container,
     /// An open sheet with solid behind its normals. Its border is touched from all sides.
     OneSided,
@@ -24,7 +24,8 @@ pub(super) fn area_vector(vertices: &[Vector3<f64>], corners: &[u32; 3]) -> Vect
     (b - a).cross(&(c - a)) / 2.0
 }
 
-/// Sum of tetrahedra over the facets, m3, with their tip at a corner of the mesh: far from the origin it stays exact.
+/// Sum of tetrahedra over the facets, m3, with a vertex at a corner of the mesh: this is exact also far from the
+/// origin.
 pub(super) fn volume<'a>(vertices: &[Vector3<f64>], mut facets: impl Iterator<Item = &'a [u32; 3]>) -> f64 {
     let Some(first) = facets.next() else { return 0.0 };
     let tip = vertices[first[0] as usize];
@@ -35,7 +36,7 @@ pub(super) fn volume<'a>(vertices: &[Vector3<f64>], mut facets: impl Iterator<It
     facets.map(tetrahedron).sum()
 }
 
-/// An edge as one facet sees it.
+/// An edge of one facet.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HalfEdge {
     /// The lower vertex first.
@@ -46,7 +47,7 @@ pub(super) struct HalfEdge {
     pub forward: bool,
 }
 
-/// All sides of all triangles, those of one edge side by side.
+/// All sides of all triangles; the sides at one edge are contiguous.
 pub(super) fn half_edges(triangles: &[[u32; 3]]) -> Vec<HalfEdge> {
     let side = |facet: usize, corners: &[u32; 3], slot: usize| {
         let (a, b) = (corners[slot], corners[(slot + 1) % 3]);
@@ -58,8 +59,8 @@ pub(super) fn half_edges(triangles: &[[u32; 3]]) -> Vec<HalfEdge> {
     sides
 }
 
-/// How often triangles wind round a point, from all solid angles: slower than by a ray, but always certain off the surface
-/// (van Oosterom and Strackee 1983, equation 8).
+/// Winding number of the triangles around a point, from all solid angles: slower than a ray, but always reliable off
+/// the surface (van Oosterom and Strackee 1983, equation 8).
 pub(super) fn winding<'a>(
     vertices: &[Vector3<f64>],
     triangles: impl Iterator<Item = &'a [u32; 3]>,

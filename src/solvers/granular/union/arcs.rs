@@ -1,8 +1,8 @@
-//! The parts of a circle that nothing covers, and the integrals of cosines and sines over them.
+//! The uncovered parts of a circle, and the integrals of cosines and sines over them.
 
 use std::f64::consts::{PI, TAU};
 
-/// Covered intervals of a circle; the buffer is used again from circle to circle.
+/// Covered intervals of a circle; the buffer is reused from circle to circle.
 #[derive(Debug, Default)]
 pub struct Arcs {
     covered: Vec<(f64, f64)>,
@@ -29,7 +29,7 @@ impl Arcs {
         self.whole = false;
     }
 
-    /// Covers all of the circle.
+    /// Covers the whole circle.
     pub fn cover_all(&mut self) {
         self.whole = true;
     }
@@ -56,7 +56,7 @@ impl Arcs {
         }
     }
 
-    /// The integrals over what is not covered.
+    /// The integrals over the uncovered parts.
     pub fn open(&mut self) -> Trig {
         let mut sum = Trig::default();
         if self.whole {

@@ -1,9 +1,10 @@
-//! Integrals over unions of overlapping balls, by planes: on every plane a union of circles, taken exactly.
+//! Integrals over unions of overlapping balls, by planes: on every plane a union of circles, integrated exactly.
 //!
-//! Gauss's theorem turns the integral over the union into one over its surface, which is made of patches of the spheres. A
-//! plane across the z axis cuts a patch in arcs of one circle, on which the integrand is closed (Green's theorem). What is left
-//! is an integral along z, smooth between the heights where arcs begin, end or meet; there it has roots at worst, which the
-//! sine map takes out, so that Gauss-Legendre points converge exponentially.
+//! Gauss's theorem turns the integral over the union into an integral over its surface, which consists of patches of
+//! the spheres. A plane across the z axis cuts a patch in arcs of one circle, for which the integral has a closed form
+//! (Green's theorem). The remaining integral is along z. It is smooth between the heights at which arcs begin, end or
+//! meet; at these heights it has roots at worst. The sine map removes the roots, so that Gauss-Legendre points converge
+//! exponentially.
 
 mod arcs;
 mod moments;

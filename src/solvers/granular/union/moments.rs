@@ -4,8 +4,8 @@ use super::Pebble;
 use super::patch::Patch;
 use nalgebra::{Matrix3, Vector3};
 
-/// Tolerance of a piece of the integral along z, in units of the largest pebble and of their reach from the origin. Rounding
-/// in the flux grows with the same power of the reach, and stays ten times below.
+/// Tolerance of a piece of the integral along z, in units of the largest pebble and of the distance of the pebbles from
+/// the origin. Rounding in the flux grows with the same power of this distance, and stays ten times smaller.
 const TOLERANCE: f64 = 1e-14;
 
 /// `∫ dV`, `∫ x dV`, `∫ x xᵀ dV` about the origin, in m³, m⁴, m⁵.
@@ -16,7 +16,8 @@ pub struct Moments {
     pub second: Matrix3<f64>,
 }
 
-/// Moments of the union of balls about the origin. The origin should lie among them, else moments are differences of large numbers.
+/// Moments of the union of balls about the origin. The origin should lie among the balls, otherwise moments are
+/// differences of large numbers.
 pub fn moments(pebbles: &[Pebble]) -> Moments {
     let unit = pebbles.iter().map(|p| p.radius).fold(0.0, f64::max);
     let scaled: Vec<_> = pebbles.iter().map(|p| Pebble { centre: p.centre / unit, radius: p.radius / unit }).collect();
@@ -37,7 +38,7 @@ pub fn moments(pebbles: &[Pebble]) -> Moments {
     }
 }
 
-/// The power of length beyond volume that the k-th integral of [`flux`] has.
+/// Power of the length, in addition to volume, of the k-th integral of [`flux`].
 fn order(k: usize) -> i32 {
     match k {
         0 => 0,

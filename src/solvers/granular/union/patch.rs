@@ -1,14 +1,15 @@
-//! The part of a unit sphere that is left when caps are cut off, and integrals over it by circles of height.
+//! The part of a unit sphere that remains after caps are cut off, and integrals over it by circles at each height.
 
 use super::Pebble;
 use super::arcs::{Arcs, Trig};
 use super::quadrature;
 use nalgebra::Vector3;
 
-/// Heights nearer to each other than this (radii) are one.
+/// Heights closer than this (in radii) count as one.
 const SAME_HEIGHT: f64 = 1e-14;
 
-/// A corner counts as covered when it lies this deep (radii) below a cap: one too many only costs time.
+/// A corner counts as covered if it lies at least this deep (in radii) below a cap: an unnecessary corner only costs
+/// time.
 const COVERED: f64 = 1e-9;
 
 /// The points n of the unit sphere with `normal·n > offset`.
@@ -26,7 +27,7 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// What shows of pebble `i` of a union.
+    /// The exposed part of pebble `i` of a union.
     pub fn of_pebble(pebbles: &[Pebble], i: usize) -> Self {
         let mut patch = Self::default();
         for (_, other) in pebbles.iter().enumerate().filter(|(j, _)| *j != i) {
@@ -35,14 +36,14 @@ impl Patch {
         patch
     }
 
-    /// What shows of a ball beside pebbles.
+    /// The part of a ball outside some pebbles.
     pub fn of_ball(ball: &Pebble, pebbles: &[Pebble]) -> Self {
         let mut patch = Self::default();
         pebbles.iter().for_each(|other| patch.cut_by(ball, other));
         patch
     }
 
-    /// Cuts off what lies in another ball.
+    /// Cuts off the part inside another ball.
     fn cut_by(&mut self, own: &Pebble, other: &Pebble) {
         let apart = other.centre - own.centre;
         let distance = apart.norm();
@@ -53,12 +54,12 @@ impl Patch {
         }
     }
 
-    /// Cuts off what lies outside another ball.
+    /// Cuts off the part outside another ball.
     pub fn keep_within(&mut self, own: &Pebble, other: &Pebble) {
         let apart = other.centre - own.centre;
         let distance = apart.norm();
         let within = distance + own.radius <= other.radius;
-        // Of two spheres in one place, the border is the one that counts.
+        // Of two coinciding spheres, the border counts.
         if distance + other.radius <= own.radius || distance >= own.radius + other.radius {
             self.empty = true;
         } else if !within {
@@ -76,8 +77,8 @@ impl Patch {
         }
     }
 
-    /// `∫ f dζ` over heights ζ from -1 to 1. The integrand sees ζ, the radius √(1 - ζ²) of the circle at that height, and the
-    /// integrals over its open arcs, angles counted from x to y.
+    /// `∫ f dζ` over heights ζ from -1 to 1. The arguments of the integrand are ζ, the radius √(1 - ζ²) of the circle
+    /// at that height, and the integrals over its open arcs, with angles from x to y.
     pub fn integrate<const N: usize>(&self, tolerance: &[f64; N], f: impl Fn(f64, f64, &Trig) -> [f64; N]) -> [f64; N] {
         let mut total = [0.0; N];
         if self.empty {
@@ -96,7 +97,7 @@ impl Patch {
         total
     }
 
-    /// The same over what is cut off.
+    /// The same over the parts that are cut off.
     pub fn integrate_covered<const N: usize>(
         &self,
         tolerance: &[f64; N],
@@ -109,7 +110,7 @@ impl Patch {
     fn open_arcs(&self, height: f64, radius: f64, arcs: &mut Arcs) {
         arcs.clear();
         for Cap { normal, offset } in &self.caps {
-            // Covered where across·cos(φ - φ_normal) > left.
+            // Covered if across·cos(φ - φ_normal) > left.
             let across = normal.x.hypot(normal.y) * radius;
             let left = offset - normal.z * height;
             if left.abs() < across {
@@ -121,7 +122,8 @@ impl Patch {
         }
     }
 
-    /// The heights between which the integrand is smooth: poles, tops and bottoms of the rims of caps, corners of the patch.
+    /// The heights between which the integrand is smooth: poles, tops and bottoms of the rims of caps, corners of the
+    /// patch.
     fn breaks(&self) -> Vec<f64> {
         let mut heights = vec![-1.0, 1.0];
         for (k, cap) in self.caps.iter().enumerate() {
@@ -138,14 +140,14 @@ impl Patch {
         heights
     }
 
-    /// Whether a point on the rims of caps `k` and `l` lies under no other.
+    /// Whether a point on the rims of caps `k` and `l` is not covered by another cap.
     fn shows(&self, n: &Vector3<f64>, k: usize, l: usize) -> bool {
         let mut others = self.caps.iter().enumerate().filter(|(m, _)| *m != k && *m != l);
         others.all(|(_, cap)| cap.normal.dot(n) <= cap.offset + COVERED)
     }
 }
 
-/// What lies of `own` in `other`, where their surfaces cross: the offset is (r² + d² - r_other²)/(2 d r).
+/// The part of `own` inside `other`, if their surfaces intersect: the offset is (r² + d² - r_other²)/(2 d r).
 fn common_circle(own: &Pebble, other: &Pebble, apart: &Vector3<f64>, distance: f64) -> Cap {
     let gap = (own.radius - other.radius) * (own.radius + other.radius);
     Cap { normal: apart / distance, offset: (gap / distance + distance) / (2.0 * own.radius) }
@@ -158,6 +160,6 @@ fn corners(a: &Cap, b: &Cap) -> impl Iterator<Item = Vector3<f64>> {
     let square = across.norm_squared();
     let inside = (a.normal * (a.offset - b.offset * cosine) + b.normal * (b.offset - a.offset * cosine)) / square;
     let off = ((1.0 - inside.norm_squared()) / square).sqrt();
-    // Parallel rims, or rims that do not meet, give no number.
+    // Parallel rims, or rims that do not intersect, give no finite number.
     [1.0, -1.0].into_iter().map(move |sign| inside + across * (sign * off)).filter(|n| n.z.is_finite())
 }

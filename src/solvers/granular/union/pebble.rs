@@ -1,4 +1,4 @@
-//! One of the balls of a union.
+//! A ball of a union.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

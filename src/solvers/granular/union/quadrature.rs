@@ -1,11 +1,12 @@
-//! Integrals of smooth functions with roots at their ends: Gauss-Legendre points under the sine map, halved where they disagree.
+//! Integrals of smooth functions with roots at their ends: Gauss-Legendre points under the sine map; intervals are
+//! halved if the results disagree.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::LazyLock;
 
 const POINTS: usize = 12;
 
-/// Halving ends here, where what a jump could still add is below rounding.
+/// Largest number of halvings; the contribution of a jump is then below rounding.
 const DEPTH: usize = 40;
 
 /// Places in (0, 1) and weights. Under x = (1 + sin(π t/2))/2 a root at either end becomes smooth.
@@ -56,7 +57,7 @@ fn refine<const N: usize>(
     let middle = from + 0.5 * (to - from);
     let (left, right) = (panel(f, from, middle), panel(f, middle, to));
     let halves = sum(left, right);
-    // What is no number is no reason to go on.
+    // Values that are not numbers do not continue the halving.
     let apart = (0..N).any(|k| (halves[k] - whole[k]).abs() > tolerance[k]);
     if !apart || depth == 0 {
         return halves;

@@ -1,22 +1,22 @@
-//! What is kept of a bed between two looks at it.
+//! The data of a bed kept between two checks.
 
 use super::super::vector::Vec3;
 
-/// The bed when all was well, and the motion of a step ago.
+/// The last stable state of the bed, and the motion one step ago.
 #[derive(Debug, Clone, Default)]
 pub(in super::super) struct Watch {
-    /// The bed when all was still well.
+    /// The last stable state of the bed.
     pub(super) good: Good,
-    /// Velocity and spin of every body one step ago, and which lists they belong to.
+    /// Velocity and spin of every body one step ago, and the number of their lists.
     pub(super) before: Vec<[f32; 6]>,
     pub(super) lists: u64,
-    /// Looks in a row with a suspect.
+    /// Number of checks in a row with a suspect body.
     pub(super) suspected: u32,
-    /// Up to which energy of turning \[J\] and for which step the network is known to be stable.
+    /// Largest energy of a reversing motion \[J\] and time step for which the network is known to be stable.
     pub(super) cleared: (f64, f64),
 }
 
-/// Where everything was, in the order of making.
+/// Positions of the last stable state, in the order of creation.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Good {
     pub(super) cells: Vec<[i32; 3]>,

@@ -1,10 +1,11 @@
-//! What a healthy run never does: it is looked for every now and then.
+//! Checks at regular intervals for signs of a failing run.
 //!
-//! Too long a step makes a body and its neighbours turn round in every step, and what they gain between two looks they lose
-//! as contacts open: such a bed need not fly apart, it boils. So every now and then the bodies are seen in two steps, one
-//! after the other. The one that turns round with the most energy is the suspect; whether its contacts, and those that it
-//! reaches in a step, allow the step is a matter of six numbers (see `critical`), and only if they do not, look after look,
-//! the whole network is asked. So nothing but a step above the limit ends a run as growth.
+//! If the step is too long, a body and its neighbours reverse their motion in every step. The energy that they gain
+//! between two checks may be lost when contacts open, so such a bed need not fly apart; the bodies vibrate. So at
+//! regular intervals the bodies are compared over two consecutive steps. The body that reverses its motion with the
+//! most energy is the suspect. The check of its contacts, and of the contacts of the bodies that it reaches in a step,
+//! is cheap (a matrix of six motions, see `critical`). Only if they do not allow the step in several checks, the limit
+//! of the whole network is computed. So only a step above the limit ends a run as growth.
 
 pub(super) mod memory;
 #[cfg(test)]
@@ -19,35 +20,35 @@ use super::record::Record;
 use super::vector::{Vec3, dot, norm};
 use memory::Good;
 
-/// Looks in a row at which a body is suspected before the network is asked, and asked again.
+/// Number of checks in a row with a suspect body before the network is checked, and before it is checked again.
 const PATIENCE: u32 = 8;
-/// Times that the network must say no.
+/// Number of times that the network must be found unstable.
 const TIMES: u32 = 2;
-/// A network that was found stable is asked again when a body turns round with this many times the energy.
+/// A network that was found stable is checked again if a body reverses its motion with this many times the energy.
 const RISE: f64 = 16.0;
-/// Looks between estimates of what is stable, after the first few.
+/// Number of checks between estimates of the stable step, after the first few.
 const ESTIMATES: u64 = 16;
-/// Relative tolerance of the network's limit.
+/// Relative tolerance of the network limit.
 const TOLERANCE: f64 = 5e-3;
 
-/// A body that turned round in the last step.
+/// A body that reversed its motion in the last step.
 #[derive(Debug, Clone, Copy)]
 struct Suspect {
     place: u32,
     /// \[J\]
     energy: f64,
-    /// Way of its surface in a step \[m\].
+    /// Displacement of its surface in a step \[m\].
     stride: f64,
 }
 
 impl<R: Real> Bed<R> {
-    /// Changes the bounds that stop a run.
+    /// Changes the limits that stop a run.
     pub fn set_limits(&mut self, limits: Limits) {
         self.limits = limits;
         self.unchecked = true;
     }
 
-    /// Looks at what the last step did.
+    /// Checks the last step.
     pub(super) fn look(&mut self) -> Result<(), Failure> {
         if let Some(place) = self.tally.lost {
             return Err(Failure::Lost(self.culprit(place)));
@@ -81,7 +82,7 @@ impl<R: Real> Bed<R> {
         Ok(())
     }
 
-    /// Fails where a body turns round in every step because the step is too long.
+    /// Fails if a body reverses its motion in every step because the step is too long.
     fn look_for_growth(&mut self) -> Result<(), Failure> {
         if self.watch.lists != self.lists.count || self.watch.before.len() != self.bodies.len() {
             return Ok(());
@@ -110,7 +111,7 @@ impl<R: Real> Bed<R> {
         Ok(())
     }
 
-    /// The body that turned round in the last step with the most energy.
+    /// The body that reversed its motion in the last step with the most energy.
     fn suspect(&self) -> Option<Suspect> {
         let mut most: Option<Suspect> = None;
         for (place, (body, before)) in self.bodies.iter().zip(&self.watch.before).enumerate() {
@@ -133,7 +134,7 @@ impl<R: Real> Bed<R> {
         most
     }
 
-    /// Whether the contacts of a body and those of its neighbours allow the step, each body by itself.
+    /// Whether the contacts of a body and of its neighbours allow the step, each body alone.
     fn allows(&self, suspect: &Suspect) -> bool {
         let gap = suspect.stride;
         let links = self.links_of(suspect.place, gap);
@@ -147,7 +148,7 @@ impl<R: Real> Bed<R> {
         })
     }
 
-    /// Largest overlap over the smaller radius, and a pebble that has it.
+    /// Largest overlap divided by the smaller radius, and a pebble with it.
     pub(super) fn deepest(&self) -> (f64, u32) {
         let mut deepest = (0.0, 0);
         for place in 0..self.contacts.len() {
@@ -170,7 +171,7 @@ impl<R: Real> Bed<R> {
         deepest
     }
 
-    /// Overlap of a contact when its force was computed \[m\], to the precision of an arm; none where it does not touch.
+    /// Overlap of a contact when its force was computed \[m\], to the precision of an arm; none without contact.
     pub(super) fn overlap(&self, place: usize) -> Option<f64> {
         let outcome = &self.contacts.outcomes[place];
         let radius = self.records[self.contacts.first[place] as usize].radius();
@@ -186,7 +187,7 @@ impl<R: Real> Bed<R> {
             step: self.steps,
             time: self.time,
             dt: self.dt,
-            // contacts of a run that has failed say little, unless there were none before
+            // contacts of a failed run give a poor estimate; they are used only if there were none before
             stable_dt: self.stable_when_good().unwrap_or_else(|| self.body_time_step()),
         }
     }
@@ -209,7 +210,7 @@ impl<R: Real> Bed<R> {
         }
     }
 
-    /// Limit of the network when all was well \[s\]; none without contacts then.
+    /// Limit of the network in the last stable state \[s\]; none without contacts then.
     fn stable_when_good(&self) -> Option<f64> {
         let good = &self.watch.good;
         if good.cells.len() != self.bodies.len() {

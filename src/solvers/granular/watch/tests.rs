@@ -3,7 +3,7 @@
 use crate::solvers::granular::critical::tests::{law, pressed};
 use crate::solvers::granular::{Bed, ContactLaw, ContactLaws, Domain, Failure, Gravity, Limits, Real, Sphere};
 
-/// Layers of spheres of two sizes over a floor in a periodic column, that will fall.
+/// Layers of falling spheres of two sizes over a floor in a periodic column.
 fn falling<R: Real>(shear: f64, ratios: [f64; 2]) -> Bed<R> {
     let length = 0.24;
     let domain = Domain::open().periodic(0, length).periodic(1, length);
@@ -36,7 +36,7 @@ fn settle<R: Real>(bed: &mut Bed<R>) {
     bed.set_damping(0.0);
 }
 
-/// Takes a share of the network's limit as step.
+/// Sets the step to a share of the network limit.
 fn step_of<R: Real>(bed: &mut Bed<R>, share: f64, gap: f64) {
     let limit = bed.critical_step(gap).unwrap().network.step;
     bed.set_time_step(share * limit);
@@ -70,13 +70,13 @@ fn a_bed_that_boils_is_stopped_in_single_precision_under_gravity() {
     let mut bed = falling::<f32>(1.0, [0.3, 0.3]);
     settle(&mut bed);
     let limit = bed.critical_step(0.0).unwrap().network.step;
-    // this bed still moves a little: contacts open, and soon its limit is up to 1.3 times that of the start
+    // this bed still moves a little: contacts open, and later its limit is up to 1.3 times the initial limit
     for share in [1.4, 1.6] {
         let mut bed = bed.clone();
         bed.set_time_step(share * limit);
         let failure = bed.run(20_000).unwrap_err();
         assert!(matches!(failure, Failure::Growth(_)), "{failure}");
-        // unless it is told to go on
+        // unless growth checks are switched off
         bed.set_limits(Limits { growth: false, ..Limits::default() });
         bed.run(2000).unwrap();
     }

@@ -1,4 +1,4 @@
-//! The energy account of a track: what is in it, what the forces brought and what is lost.
+//! The energy balance of a track: stored energy, work of the forces, and losses.
 
 use super::Leapfrog;
 use super::under::Under;
@@ -6,19 +6,20 @@ use serde::{Deserialize, Serialize};
 
 /// Energy of the track half a step before the present time, and work since the account began, J.
 ///
-/// `stored() = begin + pushes + supports + wheels - dissipated` to rounding, while the length of the step and the level
-/// stay the same. What elastic supports of ordinary sleepers hold counts as work that they have taken. A start from rest
-/// has half a kick: an account that begins there is out by the square of the first acceleration times the step.
+/// `stored() = begin + pushes + supports + wheels - dissipated` to rounding, while the step length and the level stay
+/// the same. Energy stored in elastic supports of ordinary sleepers counts as work done by the supports. A start from
+/// rest has half a kick: an account that begins there has an error of the square of the first acceleration times the
+/// step.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct EnergyAccount {
     pub kinetic: f64,
-    /// In rails, slabs, pads and what continues the rail.
+    /// In rails, slabs, pads and the continuations of the rail.
     pub strain: f64,
-    /// Energy of gravity and of the level of what continues the rail, from the track as built.
+    /// Energy of gravity and of the level of the continuations of the rail, relative to the track as built.
     pub potential: f64,
-    /// What was stored when the account began.
+    /// Stored energy when the account began.
     pub begin: f64,
-    /// Work on the track: of pushes and turns on carried feet, of supports of ordinary sleepers, of wheels.
+    /// Work on the track: by pushes and turns on carried feet, by supports of ordinary sleepers, by wheels.
     pub pushes: f64,
     pub supports: f64,
     pub wheels: f64,
@@ -32,7 +33,7 @@ impl EnergyAccount {
         self.kinetic + self.strain + self.potential
     }
 
-    /// What the account does not explain, J.
+    /// Energy that the account does not explain, J.
     pub fn residual(&self) -> f64 {
         self.stored() - (self.begin + self.pushes + self.supports + self.wheels - self.dissipated)
     }
@@ -46,7 +47,7 @@ impl Leapfrog {
         self.state.account = Some(EnergyAccount { begin, ..empty });
     }
 
-    /// The energy account at the last half step; none where none was begun.
+    /// The energy account at the last half step; none if no account was begun.
     pub fn energy(&self) -> Option<EnergyAccount> {
         self.state.account.map(|account| self.stored(account))
     }
@@ -63,7 +64,7 @@ impl Leapfrog {
         }
     }
 
-    /// Adds the work of the step that was just done: forces times `½ (Δt_- v_- + Δt_+ v_+)`, the way between the half steps.
+    /// Adds the work of the last step: forces times `½ (Δt_- v_- + Δt_+ v_+)`, the displacement between the half steps.
     pub(super) fn keep_account(&mut self) {
         let Some(mut account) = self.state.account else { return };
         let (track, state) = (&*self.track, &self.state);

@@ -1,4 +1,4 @@
-//! What tests set that nobody else may: starts of passages, steps that are too long, kicks.
+//! Settings for tests only: starts of passages, steps that are too long, kicks.
 
 use super::Leapfrog;
 use super::ride_state::RideState;
@@ -8,7 +8,7 @@ use crate::solvers::track::{Passage, Train};
 use nalgebra::DVector;
 
 impl Leapfrog {
-    /// Goes on in steps that may be too long, as if the last one had been of this length.
+    /// Continues in steps that may be too long, as if the last step had had this length.
     pub(in super::super) fn force_time_step(&mut self, time_step: f64) {
         self.factor = super::factor(&self.track, &self.mass, &self.stiffness, &self.damping, time_step).unwrap();
         if let Some(ride) = &mut self.ride {
@@ -22,7 +22,7 @@ impl Leapfrog {
         self.state.velocity[unknown] += velocity;
     }
 
-    /// Begins as a passage does whose leading wheel is at `start` (m), vehicles included.
+    /// Begins like a passage with its leading wheel at `start` (m), vehicles included.
     pub(in super::super) fn start_from(&mut self, passage: &Passage<'_>, train: &Train, start: f64) {
         let (state, half) = (&mut self.state, 0.5 * self.time_step);
         state.last_step = self.time_step;

@@ -1,11 +1,11 @@
-//! The level of the track's supports and rail ends, which may move while it runs.
+//! The level of the supports and rail ends of the track, which may move during the run.
 
 use super::Leapfrog;
 use crate::solvers::track::error::{TrackError, TrackParameter};
 use crate::solvers::track::model::TrackLevel;
 use serde::{Deserialize, Serialize};
 
-/// A level on its way to another.
+/// A level that moves to another level.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct LevelMove {
     from: TrackLevel,
@@ -21,8 +21,8 @@ impl Leapfrog {
         &self.state.level
     }
 
-    /// Moves the supports of ordinary sleepers and the ends of the rail to another level at once. Carried feet stay where they
-    /// are. An end that is held strikes the rail by this: [`Leapfrog::move_level`] does not.
+    /// Moves the supports of ordinary sleepers and the ends of the rail to another level at once. Carried feet stay in
+    /// place. A held end then acts on the rail like a blow; [`Leapfrog::move_level`] avoids this.
     pub fn set_level(&mut self, level: &TrackLevel) -> Result<(), TrackError> {
         self.track.check_level(level)?;
         self.state.level_move = None;
@@ -33,7 +33,7 @@ impl Leapfrog {
         Ok(())
     }
 
-    /// The same along a smooth way that takes `duration` (s, above 0) from now on.
+    /// The same as [`Leapfrog::set_level`], but smoothly over `duration` (s, above 0) from now on.
     pub fn move_level(&mut self, level: &TrackLevel, duration: f64) -> Result<(), TrackError> {
         self.track.check_level(level)?;
         if !(duration > 0.0 && duration.is_finite()) {
@@ -45,7 +45,7 @@ impl Leapfrog {
         Ok(())
     }
 
-    /// The level at the end of a step that was just done.
+    /// Sets the level at the end of the last step.
     pub(super) fn advance_level(&mut self) {
         let (state, dt) = (&mut self.state, self.time_step);
         let Some(LevelMove { from, to, began, duration }) = &state.level_move else { return };

@@ -1,4 +1,4 @@
-//! The longest step that contacts bear whose force is explicit in time.
+//! The longest stable step of contacts whose force is explicit in time.
 
 use crate::linalg::banded::SymmetricBanded;
 use crate::solvers::track::Multibody;
@@ -9,7 +9,7 @@ use crate::solvers::track::model::Foot;
 use crate::solvers::track::{Seat, WheelContact};
 use std::cmp::Ordering;
 
-/// A wheel may press with so many times its static force before its contact asks for a shorter step.
+/// Wheel force at which the limit of its contact is computed, as a multiple of the static wheel force.
 const PEAK: f64 = 3.0;
 
 /// The longest stable step of an explicit contact.
@@ -17,7 +17,7 @@ const PEAK: f64 = 3.0;
 pub struct StepLimit {
     /// s.
     pub time_step: f64,
-    /// Chainage of the contact, m; of a wheel where the rail lends it least mass.
+    /// Chainage of the contact, m; for a wheel, the place where the effective mass of the rail is smallest.
     pub x: f64,
     pub contact: Explicit,
 }
@@ -33,7 +33,7 @@ fn longest_step(mass: f64, stiffness: f64, damping: f64) -> f64 {
     2.0 * mass / (damping + (damping * damping + stiffness * mass).sqrt())
 }
 
-/// The limit that the supports of ordinary sleepers set; none without such sleepers.
+/// The limit by the supports of ordinary sleepers; none without such sleepers.
 pub(super) fn of_track(track: &Track) -> Option<StepLimit> {
     let limit = |seat: &Seat| match seat.foot {
         Foot::Sleeper { mass, support_stiffness, support_damping, .. } => Some(StepLimit {
@@ -46,7 +46,7 @@ pub(super) fn of_track(track: &Track) -> Option<StepLimit> {
     track.model.seats.iter().filter_map(limit).min_by(StepLimit::shorter)
 }
 
-/// Where the rail lends a wheel the least mass: a chainage, m, and eᵀ M⁻¹ e there, 1/kg.
+/// The place of the smallest effective mass of the rail under a wheel: a chainage, m, and eᵀ M⁻¹ e there, 1/kg.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LightestRail {
     x: f64,
@@ -54,7 +54,7 @@ pub(super) struct LightestRail {
 }
 
 impl LightestRail {
-    /// Between nodes an element lends more. A rail without mass lends none.
+    /// Between nodes the effective mass of an element is larger than at its nodes. A rail without mass has none.
     pub fn new(track: &Track, mass: &SymmetricBanded) -> Self {
         let mut mass = mass.clone();
         let held = track.held.iter().map(|(unknown, _)| *unknown);
@@ -69,7 +69,7 @@ impl LightestRail {
             .unwrap_or(Self { x: track.nodes[0], inverse_mass: 0.0 })
     }
 
-    /// The limit that the wheels of a vehicle set on this rail.
+    /// The limit by the wheels of a vehicle on this rail.
     pub fn limit(&self, vehicle: &Multibody, gravity: f64) -> Option<StepLimit> {
         let load = PEAK * vehicle.wheel_load(gravity);
         let steps = vehicle.wheels.iter().filter_map(|wheel| {

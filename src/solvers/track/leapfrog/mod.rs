@@ -1,28 +1,28 @@
-//! The track in steps that it shares with something explicit, such as grains under its sleepers: central differences
-//! in time whose linear, stiff part is implicit.
+//! The track in time steps that it shares with an explicit model, such as grains under its sleepers: central
+//! differences in time whose linear, stiff part is implicit.
 //!
-//! Displacements and forces belong to full steps n, velocities to the half steps between them, as a leapfrog of
-//! grains has them:
+//! Displacements and forces belong to full steps n, velocities to the half steps between them, as in a leapfrog scheme
+//! of grains:
 //!
 //! ```text
 //! M a_n + C (v_{n-1/2} + v_{n+1/2})/2 + K (β u_{n-1} + (1-2β) u_n + β u_{n+1}) = f + F_n
 //! v_{n+1/2} = v_{n-1/2} + Δt a_n,    u_{n+1} = u_n + Δt v_{n+1/2}
 //! ```
 //!
-//! f are gravity and the pull of the track beyond the rail's ends, F_n all forces that are computed from what is
-//! known at step n: pushes of the ground on carried sleepers, supports of ordinary ones, wheels. One system is left,
-//! whose matrix is factored once for a step:
+//! f are gravity and the forces of the track beyond the rail ends. F_n are all forces that are computed from the state
+//! at step n: pushes of the ground on carried sleepers, supports of ordinary sleepers, wheels. The remaining linear
+//! system has a matrix that is factored once for a step length:
 //!
 //! ```text
 //! u_{n-1} - 2 u_n + u_{n+1} = Δt² a_n
 //! M̂ a_n = f + F_n - C v_{n-1/2} - K u_n,    M̂ = M + ½ Δt C + β Δt² K,    β = ¼
 //! ```
 //!
-//! This is Newmark's method (β = ¼, γ = ½) for the implicit part and central differences for the explicit one, mixed
-//! as Hughes and Liu do (1978, J. Appl. Mech. 45, 371–378). It is symmetric in time and of second order. A track at
-//! rest that is let go begins with half a kick; where the length of a step changes, one kick has the mean of both. A
-//! sleeper that comes down on its damper meets a force that jumps, at the next full step: there the error is of first
-//! order, here as in a passage.
+//! This is Newmark's method (β = ¼, γ = ½) for the implicit part and central differences for the explicit part, mixed
+//! as in Hughes and Liu (1978, J. Appl. Mech. 45, 371–378). It is symmetric in time and of second order. A track that
+//! is released from rest begins with half a kick; if the step length changes, one kick has the mean of both lengths.
+//! When a sleeper touches its support again, the force of the damper jumps at the next full step: there the error is of
+//! first order, here as in a passage.
 //!
 //! **Energy.** The product with the mean velocity v̄ at a full step gives, with the mean displacement ū at half steps,
 //!
@@ -31,22 +31,23 @@
 //! E = ½ vᵀ M v + ½ ūᵀ K ū - f ū,    E_{n+1/2} - E_{n-1/2} = Δt v̄_nᵀ (F_n - C v̄_n)
 //! ```
 //!
-//! to rounding. So a force on the interface gives one side the power `F_n v̄_n` that it takes from the other, and
-//! without F no step is too long. [`Leapfrog::watch`] keeps this account.
+//! to rounding. So a force on the interface gives one side the power `F_n v̄_n` that it takes from the other side, and
+//! without F every step length is stable. [`Leapfrog::watch`] keeps this account.
 //!
-//! **Limit.** Let F hold a spring k and a damper c between places that e picks from u, the damper with the velocity
-//! `v_{n-1/2} + ½ Δt a_{n-1}`. In the fastest motion, `u_n = (-1)ⁿ u`, the implicit elasticity cancels (1 - 4β = 0),
-//! whatever its stiffness, and
+//! **Limit.** Let F contain a spring k and a damper c between places that e selects from u; the damper has the velocity
+//! `v_{n-1/2} + ½ Δt a_{n-1}`. In the fastest motion, `u_n = (-1)ⁿ u`, the implicit elasticity cancels (1 - 4β = 0) for
+//! any stiffness, and
 //!
 //! ```text
 //! 4/Δt² > (k + 4 c/Δt) eᵀ M⁻¹ e,    so  Δt < 2 m/(c + √(c² + k m)),    1/m = eᵀ M⁻¹ e
 //! ```
 //!
-//! For the support of a sleeper m is the sleeper; for a wheel it is the wheel and the mass that the rail lends it.
+//! For the support of a sleeper, m is the mass of the sleeper; for a wheel, the mass of the wheel and the effective
+//! mass of the rail.
 //!
-//! **Wheels** that ride press by their law on the rail of the present time, which yields under them within its element.
-//! Beyond an absorbing end they press on the beam that goes on there, whose shape moves with the end: mass and stiffness
-//! of that shape belong to the end.
+//! **Wheels** that ride press by their contact law on the rail at the present time; the rail yields under them within
+//! its element. Beyond an absorbing end they press on the beam that continues the rail. The shape of this beam moves
+//! with the end, and the mass and stiffness of the shape belong to the end.
 
 mod energy;
 #[cfg(test)]
@@ -77,16 +78,16 @@ use riding::Ride;
 use std::sync::Arc;
 use under::Beyond;
 
-/// β of the implicit part: the least that is stable for every stiffness.
+/// β of the implicit part: the smallest value that is stable for every stiffness.
 const BETA: f64 = 0.25;
 
-/// What presses on the rail in a step.
+/// The loads on the rail in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum WheelLoads<'a> {
-    /// Nothing; a train that rides has passed, or comes later.
+    /// No load; a riding train has passed or has not arrived yet.
     None,
-    /// Forces that are known: chainage (m) and force (N, down) at the present time. Those beyond an absorbing end act on it
-    /// through the track that goes on there; others off the track do nothing.
+    /// Known forces: chainage (m) and force (N, down) at the present time. Forces beyond an absorbing end act on the
+    /// end through the continuation of the track; other forces off the track have no effect.
     Given(&'a [(f64, f64)]),
     /// The train of [`Leapfrog::ride`].
     Riding,
@@ -100,14 +101,16 @@ pub struct Leapfrog {
     time_step: f64,
     /// 1/s.
     drag: f64,
-    /// M, with the rails beyond absorbing ends: a wheel there would find nothing but the end of an element.
+    /// M, including the rails beyond absorbing ends: otherwise a wheel there would meet only the mass at the end of an
+    /// element.
     mass: SymmetricBanded,
     /// K and C, without the supports of ordinary sleepers.
     stiffness: SymmetricBanded,
     damping: SymmetricBanded,
     /// Factor of M̂.
     factor: TwistedFactor,
-    /// What continues the rail pulls its ends to their level: end, unknown and N or N m per metre.
+    /// Forces by which the continuation of the rail pulls its ends to their level: end, unknown, and N or N m per
+    /// metre.
     pulls: Vec<(usize, usize, f64)>,
     beyond: Beyond,
     ride: Option<Ride>,
@@ -119,10 +122,10 @@ pub struct Leapfrog {
 }
 
 impl Leapfrog {
-    /// The track at rest at `level` under gravity, with its carried feet held at their settlements, before a first step of
-    /// `time_step` (s).
+    /// The track at rest at `level` under gravity, with its carried feet held at their settlements, before a first step
+    /// of `time_step` (s).
     ///
-    /// Fails where nothing holds the track, and where the step is longer than the supports of its ordinary sleepers allow.
+    /// Fails if nothing holds the track, or if the step is longer than the supports of its ordinary sleepers allow.
     pub fn new(track: Arc<Track>, level: &TrackLevel, time_step: f64) -> Result<Self, TrackError> {
         let rest = solve_static(&track, level, &Loads::default())?;
         let mut stiffness = track.stiffness.clone();
@@ -152,7 +155,7 @@ impl Leapfrog {
         })
     }
 
-    /// Goes on in steps of another length, s. Fails where that is longer than the supports and wheels allow.
+    /// Continues in steps of another length, s. Fails if the length is above the limit of the supports and wheels.
     pub fn set_time_step(&mut self, time_step: f64) -> Result<(), TrackError> {
         check_step(&self.track, self.ride.as_ref(), time_step)?;
         if time_step != self.time_step {
@@ -165,8 +168,9 @@ impl Leapfrog {
         Ok(())
     }
 
-    /// Brakes every mass of the track by a force of its momentum times `drag` (1/s, 0 for none), to bring it to rest. Motion
-    /// much faster than the step hardly feels it: loads that grow over some milliseconds do not wake it.
+    /// Brakes every mass of the track by a force of `drag` (1/s, 0 for none) times its momentum, to bring the track to
+    /// rest. The drag hardly affects motion much faster than the step; loads that grow over some milliseconds excite no
+    /// such motion.
     pub fn set_drag(&mut self, drag: f64) -> Result<(), TrackError> {
         if !(drag >= 0.0 && drag.is_finite()) {
             let name = TrackParameter::Damping("drag of a track");
@@ -180,11 +184,12 @@ impl Leapfrog {
         Ok(())
     }
 
-    /// Lets `train` run from now on, its leading wheel at `start` (m), before the track, with every vehicle at rest there.
+    /// Starts the ride of `train`, its leading wheel at `start` (m), before the track, with every vehicle at rest
+    /// there.
     ///
-    /// Wheels stand on the track that goes on beyond an absorbing end, on level ground beyond others, at the level that the end
-    /// of the rail has now. So it is to be called while the track is at rest, and begins best at [`Leapfrog::approach`]. Fails
-    /// where a wheel stands on the track, and where the step is longer than the wheels allow.
+    /// Beyond an absorbing end wheels stand on the continuation of the track, beyond other ends on level ground, at the
+    /// present level of the rail end. So call this while the track is at rest, best with `start` from
+    /// [`Leapfrog::approach`]. Fails if a wheel stands on the track, or if the step is longer than the wheels allow.
     pub fn ride(&mut self, train: &Train, motion: &Motion, start: f64) -> Result<(), TrackError> {
         let mut ride = Ride::new(&self.track, &self.mass, &self.beyond, train, motion, start)?;
         ride.check_start(&self.track, start)?;
@@ -196,25 +201,25 @@ impl Leapfrog {
         Ok(())
     }
 
-    /// Takes the train away.
+    /// Removes the train.
     pub fn dismiss(&mut self) {
         self.ride = None;
         self.state.ride = ride_state::RideState::default();
     }
 
-    /// Where the leading wheel of a train is not yet felt by the track that it comes to, m.
+    /// A place of the leading wheel at which the train does not yet act on the track, m.
     pub fn approach(&self, direction: Direction) -> f64 {
         let (sign, entry) = (direction.sign(), usize::from(direction == Direction::Backward));
         let reach = self.beyond[entry].map_or(SAME_PLACE, |continuation| continuation.reach());
         self.track.model.ends[entry] - sign * (reach + SAME_PLACE)
     }
 
-    /// When the last wheel of the train is no longer felt by the track, s; none without a train.
+    /// The time from which the last wheel of the train does not act on the track any more, s; none without a train.
     pub fn ride_ends(&self) -> Option<f64> {
         self.ride.as_ref().map(|ride| self.state.ride.began + ride.duration())
     }
 
-    /// The longest stable step and where it is set; none where no contact is explicit.
+    /// The longest stable step and the contact that sets it; none if no contact is explicit.
     pub fn limit(&self) -> Option<StepLimit> {
         limit::of_track(&self.track)
             .into_iter()
@@ -247,7 +252,7 @@ impl Leapfrog {
     }
 }
 
-/// Fails where a step (s) is not above 0 or longer than the explicit contacts allow.
+/// Fails if a step (s) is not above 0 or longer than the explicit contacts allow.
 fn check_step(track: &Track, ride: Option<&Ride>, time_step: f64) -> Result<(), TrackError> {
     if !(time_step > 0.0 && time_step.is_finite()) {
         return Err(TrackError::Parameter { name: TrackParameter::TimeStep, value: time_step, expected: "above 0" });
@@ -271,7 +276,7 @@ fn damping(track: &Track, mass: &SymmetricBanded, drag: f64) -> SymmetricBanded 
     damping
 }
 
-/// Factors M̂; fails where the track is a mechanism without mass.
+/// Factors M̂; fails if the track is a mechanism without mass.
 fn factor(
     track: &Track,
     mass: &SymmetricBanded,

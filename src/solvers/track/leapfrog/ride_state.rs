@@ -1,4 +1,4 @@
-//! How a train that rides moves, as data.
+//! The state of a riding train, as data.
 
 use super::rider::{BodyState, WheelState};
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub(super) struct RideState {
     /// When it began, s.
     pub began: f64,
-    /// Levels of the ground before the left and behind the right end, m, where nothing goes on there.
+    /// Levels of the ground before the left and behind the right end, m, if the rail has no continuation there.
     pub ground: [f64; 2],
     pub bodies: Vec<BodyState>,
     pub wheels: Vec<WheelState>,

@@ -1,4 +1,4 @@
-//! A vehicle of a train that rides: the scheme of the track for its own few unknowns, `M̂` dense.
+//! A vehicle of a riding train: the scheme of the track for the few unknowns of the vehicle, with a dense `M̂`.
 
 use super::BETA;
 use crate::solvers::track::Multibody;
@@ -9,9 +9,9 @@ use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// Newton steps after which a vehicle on level ground has no rest.
+/// Newton steps after which the search for a state of rest of a vehicle on level ground fails.
 const NEWTON_LIMIT: usize = 60;
-/// Wheels are at rest when they move by less than this part of themselves.
+/// Wheels are at rest if they move by less than this share of their displacement.
 const ROUNDING: f64 = 1e-14;
 
 /// A vehicle. Lists run over its unknowns or its wheels.
@@ -23,7 +23,7 @@ pub(super) struct Rider {
     first_wheel: usize,
     /// Constant forces, N.
     weight: Vec<f64>,
-    /// Forces of wheels beyond this are senseless, N.
+    /// Limit of the wheel forces, N; a larger force means that the motion is unstable.
     force_limit: f64,
     time_step: f64,
     /// `M̂⁻¹`.
@@ -39,12 +39,12 @@ pub(super) struct BodyState {
     pub acceleration: DVector<f64>,
 }
 
-/// What a wheel was at the time of its last force.
+/// The state of a wheel at the time of its last force.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct WheelState {
     /// N.
     pub force: f64,
-    /// m, and its rate over the step that had led there, m/s.
+    /// m, and its rate over the step before, m/s.
     pub indentation: f64,
     pub rate: f64,
 }
@@ -92,7 +92,7 @@ impl Rider {
         self.positions(leading, sign).fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)])
     }
 
-    /// Prepares steps of another length, s; fails where something has neither mass nor spring.
+    /// Prepares steps of another length, s; fails if an unknown has neither mass nor spring.
     pub fn set_time_step(&mut self, time_step: f64) -> Result<(), TrackError> {
         let vehicle = &self.vehicle;
         let mut matrix = 0.5 * time_step * &vehicle.damping + BETA * time_step * time_step * &vehicle.stiffness;
@@ -102,14 +102,14 @@ impl Rider {
         self.inverse = matrix.cholesky().map(|factor| factor.inverse()).ok_or(TrackError::Parameter {
             name: TrackParameter::Vehicle("unknowns of a vehicle"),
             value: vehicle.order() as f64,
-            expected: "that have a mass or springs to all sides",
+            expected: "that each have a mass or a spring",
         })?;
         self.time_step = time_step;
         Ok(())
     }
 
-    /// Its rest on ground at `level` (m) that yields by `compliance` (m/N), at x (m): `K y + Σ F(y_w - level) e_w = weight` by
-    /// Newton's method.
+    /// State of rest on ground at `level` (m) that yields by `compliance` (m/N), at x (m):
+    /// `K y + Σ F(y_w - level) e_w = weight` by Newton's method.
     pub fn standing(&self, level: f64, compliance: f64, x: f64) -> Result<(BodyState, Vec<WheelState>), TrackError> {
         let (vehicle, order) = (&self.vehicle, self.vehicle.order());
         let mean_load = self.force_limit / WILD_FORCE;
@@ -161,13 +161,13 @@ impl Rider {
         self.vehicle.wheels[wheel].unknown.map_or(0.0, |unknown| body.displacement[unknown])
     }
 
-    /// Whether a wheel force makes sense, N.
+    /// Whether a wheel force (N) is within its limit.
     pub fn bears(&self, wheel: usize, force: f64) -> bool {
         self.vehicle.wheels[wheel].unknown.is_none() || within(force, self.force_limit)
     }
 
-    /// Force of a wheel that approaches the rail's nodes by `approach` (m) where the rail yields by `compliance` (m/N) beyond
-    /// them, `last_step` (s) after the time of `state`.
+    /// Force of a wheel that approaches the rail nodes by `approach` (m) if the rail yields by `compliance` (m/N)
+    /// relative to the nodes, `last_step` (s) after the time of `state`.
     pub fn press(
         &mut self,
         wheel: usize,

@@ -1,7 +1,7 @@
-//! The train that rides: any number of vehicles, of which those move that are on the track or partly so.
+//! The riding train: any number of vehicles. Only vehicles that are at least partly on the track move.
 //!
-//! Wheels before and behind the track stand on what goes on there ([`Under`]). A vehicle of which the track feels nothing keeps
-//! its motion: before the track that is its rest.
+//! Wheels before and behind the track stand on the continuation of the track ([`Under`]). A vehicle that does not act
+//! on the track keeps its motion; before the track it stays at rest.
 
 use super::limit::{LightestRail, StepLimit};
 use super::ride_state::RideState;
@@ -23,7 +23,7 @@ pub(super) struct Ride {
     sign: f64,
     riders: Vec<Rider>,
     limit: Option<StepLimit>,
-    /// Chainages between which the track feels a wheel, m.
+    /// Chainages between which a wheel acts on the track, m.
     felt: [f64; 2],
 }
 
@@ -42,7 +42,7 @@ impl Ride {
         let reach = |end: usize| beyond[end].map_or(0.0, |continuation| continuation.reach());
         let felt = [track.model.ends[0] - reach(0), track.model.ends[1] + reach(1)];
         let exit = felt[usize::from(sign > 0.0)] + sign * train.wheel_base();
-        // A train that has left goes on at its last speed.
+        // A train that has left the track goes on at its last speed.
         let timetable = motion.timetable(start, exit, sign)?;
         let gravity = track.model.gravity;
         let rail = LightestRail::new(track, mass);
@@ -57,7 +57,7 @@ impl Ride {
         Ok(Self { timetable, sign, riders, limit, felt })
     }
 
-    /// Fails where a wheel stands on the track, or has passed it, when the ride begins.
+    /// Fails if a wheel stands on the track, or has passed it, when the ride begins.
     pub fn check_start(&self, track: &Track, start: f64) -> Result<(), TrackError> {
         let entry = track.model.ends[usize::from(self.sign < 0.0)];
         if self.sign * (entry - start) > 0.0 {
@@ -67,7 +67,7 @@ impl Ride {
         Err(TrackError::Parameter { name, value: start, expected: "before the track" })
     }
 
-    /// When the last wheel is no longer felt by the track, s since the ride began.
+    /// The time from which the last wheel does not act on the track any more, s since the ride began.
     pub fn duration(&self) -> f64 {
         self.timetable.duration
     }
@@ -102,8 +102,8 @@ impl Ride {
         self.riders.iter().flat_map(move |rider| rider.positions(leading, sign))
     }
 
-    /// Presses the wheels on the rail as it lies at the present time, adds their forces to `nodal`, and moves the vehicles on
-    /// by a step of the length that was set.
+    /// Presses the wheels on the rail at its present position, adds their forces to `nodal`, and moves the vehicles by
+    /// one step of the set length.
     pub fn step(
         &mut self,
         track: &Track,

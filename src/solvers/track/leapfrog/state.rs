@@ -1,4 +1,4 @@
-//! What the next step depends on, as data.
+//! The state on which the next step depends, as data.
 
 use super::Leapfrog;
 use super::energy::EnergyAccount;
@@ -9,7 +9,7 @@ use crate::solvers::track::mesh::Track;
 use crate::solvers::track::model::TrackLevel;
 use serde::{Deserialize, Serialize};
 
-/// The motion of a [`Leapfrog`]. With the same track, step, drag and train it goes on to the same bits.
+/// The motion of a [`Leapfrog`]. With the same track, step, drag and train the run continues bit by bit the same.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LeapfrogState {
     pub(super) steps: u64,
@@ -19,14 +19,14 @@ pub struct LeapfrogState {
     pub(super) last_step: f64,
     pub(super) last_kick: f64,
     pub(super) displacement: Vec<f64>,
-    /// A step before.
+    /// Displacement one step before.
     pub(super) before: Vec<f64>,
-    /// Half a step before.
+    /// Velocity half a step before.
     pub(super) velocity: Vec<f64>,
-    /// A step before.
+    /// Acceleration one step before.
     pub(super) acceleration: Vec<f64>,
-    /// Forces of the last step: pushes on carried feet and of the supports of ordinary sleepers, N up; wheels that the track
-    /// feels, m and N down.
+    /// Forces of the last step: pushes on carried feet and forces of the supports of ordinary sleepers, N up; wheels
+    /// that act on the track, m and N down.
     pub(super) pushes: Vec<f64>,
     /// Moments of the ground on carried feet, N m, as the slope of the rail.
     pub(super) turns: Vec<f64>,
@@ -84,7 +84,7 @@ impl Leapfrog {
         &self.state
     }
 
-    /// Goes on from a state of this track and train; fails where it belongs to another.
+    /// Continues from a state of this track and train; fails if the state belongs to another track or train.
     pub fn restore(&mut self, state: &LeapfrogState) -> Result<(), TrackError> {
         if state.shape() != self.state.shape() {
             let name = TrackParameter::Load("unknowns of a stored state");

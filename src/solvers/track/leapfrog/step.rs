@@ -6,10 +6,11 @@ use crate::solvers::track::error::{TrackError, TrackParameter, Wild};
 use crate::solvers::track::passage::{WILD_DISPLACEMENT, within};
 
 impl Leapfrog {
-    /// One step from the present time. `pushes[i]` is the force of the ground on the underside of the i-th carried foot at the
-    /// present time, N, positive up.
+    /// One step from the present time. `pushes[i]` is the force of the ground on the underside of the i-th carried foot
+    /// at the present time, N, positive up.
     ///
-    /// Fails where a number is missing or none, and where the motion has grown beyond sense; then the state is not to be used.
+    /// Fails if a push is missing or is not a number, and if a value is beyond its limit; then the state must not be
+    /// used.
     pub fn step(&mut self, pushes: &[f64], wheels: &WheelLoads<'_>) -> Result<(), TrackError> {
         self.forces.copy_from_slice(&self.track.weight);
         for (end, unknown, pull) in &self.pulls {
@@ -28,8 +29,8 @@ impl Leapfrog {
         self.check_sense()
     }
 
-    /// Sets the moment of the ground on the i-th carried foot about its middle, N m. A moment above 0 presses the side of larger x down.
-    /// It acts in all steps until it is set again. A foot that stays level has none.
+    /// Sets the moment of the ground on the i-th carried foot about its middle, N m. A moment above 0 presses the side
+    /// of larger x down. It acts in all steps until it is set again. A foot that stays level ignores it.
     pub fn turn(&mut self, i: usize, moment: f64) {
         self.state.turns[i] = moment;
     }
@@ -49,7 +50,7 @@ impl Leapfrog {
         Ok(())
     }
 
-    /// Supports of ordinary sleepers push by what their gaps and velocities are now.
+    /// Adds the forces of the supports of ordinary sleepers at the present gaps and velocities.
     fn carry_sleepers(&mut self) {
         let state = &mut self.state;
         let half = 0.5 * state.last_step;
@@ -107,7 +108,7 @@ impl Leapfrog {
         state.time += dt;
     }
 
-    /// Fails where a displacement is beyond sense.
+    /// Fails if a displacement is beyond its limit.
     fn check_sense(&self) -> Result<(), TrackError> {
         let state = &self.state;
         if state.displacement.iter().fold(true, |sound, u| sound & within(*u, WILD_DISPLACEMENT)) {

@@ -1,10 +1,11 @@
-//! What a wheel stands on: the rail, the track that goes on beyond an absorbing end, or level ground beyond another.
+//! The surface under a wheel: the rail, the continuation of the track beyond an absorbing end, or level ground beyond
+//! another end.
 
 use crate::solvers::track::ends::{Continuation, end_unknown};
 use crate::solvers::track::mesh::Track;
 use crate::solvers::track::model::TrackLevel;
 
-/// The surface under a wheel: `rest + Σ shape u`, and by `compliance` (m/N) lower under the force there, which acts on the
+/// The surface under a wheel: `rest + Σ shape u`. A force there lowers it further by `compliance` (m/N) and acts on the
 /// unknowns by the same shape.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Under {
@@ -14,7 +15,7 @@ pub(super) struct Under {
     pub compliance: f64,
 }
 
-/// What goes on beyond the ends of the rail.
+/// The continuations beyond the ends of the rail.
 pub(super) type Beyond = [Option<Continuation>; 2];
 
 pub(super) fn beyond(track: &Track) -> Beyond {
@@ -22,7 +23,8 @@ pub(super) fn beyond(track: &Track) -> Beyond {
 }
 
 impl Under {
-    /// At a chainage, m; `ground` are the levels (m) before the left and behind the right end where nothing goes on there.
+    /// The surface at a chainage, m; `ground` are the levels (m) before the left and behind the right end if the rail
+    /// has no continuation there.
     pub fn wheel_at(track: &Track, beyond: &Beyond, level: &TrackLevel, ground: [f64; 2], x: f64) -> Self {
         if let Ok(point) = track.rail_point(x) {
             let unknowns = track.element_unknowns(point.element);
@@ -43,12 +45,12 @@ impl Under {
         }
     }
 
-    /// Level of the surface without a force there, m, with these displacements of the track.
+    /// Level of the surface at displacements `u` of the track without a force there, m.
     pub fn surface(&self, u: &[f64]) -> f64 {
         self.rest + self.moved(|i| u[i])
     }
 
-    /// What the place moves, if the unknowns move by `of`, the rest by nothing.
+    /// Displacement of the surface if each unknown moves by `of` and nothing else moves.
     pub fn moved(&self, of: impl Fn(usize) -> f64) -> f64 {
         self.unknowns.iter().zip(self.shape).map(|(i, shape)| shape * of(*i)).sum()
     }
@@ -60,7 +62,7 @@ impl Under {
         }
     }
 
-    /// Whether a force here is felt by the track.
+    /// Whether a force here acts on the track.
     pub fn is_felt(&self) -> bool {
         self.shape != [0.0; 4]
     }

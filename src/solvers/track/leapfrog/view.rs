@@ -1,23 +1,23 @@
-//! What may be asked of a track in motion: its feet at the present time, and all of it at the time of the last forces.
+//! The results of a track in motion: its feet at the present time, and the whole track at the time of the last forces.
 
 use super::Leapfrog;
 use crate::solvers::track::mesh::{CarriedSleeper, FootUnknown, Track};
 
-/// How a carried sleeper or its underside moves; positive down.
+/// The motion of a carried sleeper or its underside; positive down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FootMotion {
-    /// At the present time, m from the track as built.
+    /// At the present time, m relative to the track as built.
     pub level: f64,
-    /// Half a step before, m/s: what brought it there.
+    /// Half a step before, m/s.
     pub velocity: f64,
-    /// A step before, m/s^2.
+    /// One step before, m/s^2.
     pub acceleration: f64,
     /// Velocity at the present time by extrapolation, m/s: `v_{n-1/2} + ½ Δt a_{n-1}`.
     pub present_velocity: f64,
 }
 
-/// The track at the time of the forces that the last step took: everything at one full step, of second order. Displacements
-/// and forces are positive down unless said otherwise.
+/// The track at the time of the forces of the last step: all values belong to one full step and are of second order.
+/// Displacements and forces are positive down unless said otherwise.
 #[derive(Debug, Clone, Copy)]
 pub struct LeapfrogView<'a> {
     leapfrog: &'a Leapfrog,
@@ -29,12 +29,13 @@ impl Leapfrog {
         self.motion(self.track.carried[i].unknown)
     }
 
-    /// The underside of the i-th carried sleeper, on which the ground pushes; the sleeper itself where it has no pad.
+    /// The underside of the i-th carried sleeper, on which the ground pushes; the sleeper itself if it has no pad.
     pub fn underside(&self, i: usize) -> FootMotion {
         self.motion(self.track.carried[i].underside)
     }
 
-    /// How the i-th carried sleeper turns, rad as the slope of the rail: down with x. None where it stays level.
+    /// Rotation of the i-th carried sleeper, rad as the slope of the rail: down with x. None if the sleeper stays
+    /// level.
     pub fn pitch(&self, i: usize) -> Option<FootMotion> {
         self.track.carried[i].pitch.map(|unknown| self.motion(unknown))
     }
@@ -55,7 +56,7 @@ impl Leapfrog {
         }
     }
 
-    /// The track one step before the present time, when the last forces acted; the start before any step.
+    /// The track one step before the present time, when the last forces acted; before any step, the start.
     pub fn view(&self) -> LeapfrogView<'_> {
         LeapfrogView { leapfrog: self }
     }
@@ -100,7 +101,8 @@ impl<'a> LeapfrogView<'a> {
         }
     }
 
-    /// Displacement of the sleeper or slab under a seat, m, from the track as built; 0 for rigid seats, as for both others.
+    /// Displacement of the sleeper or slab under a seat, m, relative to the track as built; 0 for rigid seats. The same
+    /// holds for its velocity and acceleration.
     pub fn foot_displacement(&self, seat: usize) -> f64 {
         self.leapfrog.track.foot_unknown(seat).map_or(0.0, |unknown| self.displacement(unknown))
     }
@@ -115,18 +117,18 @@ impl<'a> LeapfrogView<'a> {
         self.leapfrog.track.foot_unknown(seat).map_or(0.0, |unknown| self.leapfrog.state.acceleration[unknown])
     }
 
-    /// Displacement of the underside of the i-th carried sleeper, m, from the track as built.
+    /// Displacement of the underside of the i-th carried sleeper, m, relative to the track as built.
     pub fn underside_displacement(&self, i: usize) -> f64 {
         let CarriedSleeper { underside, .. } = self.leapfrog.track.carried[i];
         self.displacement(underside)
     }
 
-    /// Deflection of the rail at a node, m, from the track as built.
+    /// Deflection of the rail at a node, m, relative to the track as built.
     pub fn rail_deflection(&self, node: usize) -> f64 {
         self.displacement(self.leapfrog.track.rail[node])
     }
 
-    /// Slope of the rail at a node, rad, down with x; at a joint that of the rail left of it.
+    /// Slope of the rail at a node, rad, down with x; at a joint, the slope of the rail left of it.
     pub fn rail_slope(&self, node: usize) -> f64 {
         self.displacement(self.leapfrog.track.rail[node] + 1)
     }
@@ -155,19 +157,19 @@ impl<'a> LeapfrogView<'a> {
         }
     }
 
-    /// Chainage (m) and force (N, down) of every wheel that the track feels: those on the rail, and near an absorbing end those
-    /// beyond it.
+    /// Chainage (m) and force (N, down) of every wheel that acts on the track: wheels on the rail, and wheels beyond an
+    /// absorbing end and near it.
     pub fn on_rail(&self) -> &'a [(f64, f64)] {
         &self.leapfrog.state.on_rail
     }
 
-    /// Chainage of each wheel of the train, vehicle by vehicle, m; also where it stands off the track.
+    /// Chainage of each wheel of the train, vehicle by vehicle, m; wheels off the track included.
     pub fn wheel_positions(&self) -> impl Iterator<Item = f64> + 'a {
         let (leapfrog, time) = (self.leapfrog, self.time());
         leapfrog.ride.iter().flat_map(move |ride| ride.positions(time - leapfrog.state.ride.began))
     }
 
-    /// Force of each wheel of the train on the rail or what goes on beyond it, vehicle by vehicle, N.
+    /// Force of each wheel of the train on the rail or its continuation, vehicle by vehicle, N.
     pub fn wheel_forces(&self) -> impl Iterator<Item = f64> + 'a {
         self.leapfrog.state.ride.forces()
     }

@@ -1,8 +1,8 @@
-//! What stands on a track at rest.
+//! The loads on a track at rest.
 
 use crate::solvers::track::train::Train;
 
-/// What stands on the track besides its own weight.
+/// The loads on the track besides its own weight.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Loads<'a> {
     /// Chainage (m) and force (N, down) on the rail.
@@ -13,7 +13,7 @@ pub struct Loads<'a> {
     pub train: Option<(&'a Train, f64)>,
 }
 
-/// Further nodal forces, for states that move: the track's and each vehicle's.
+/// Additional nodal forces for states in motion: on the track and on each vehicle.
 #[derive(Debug, Clone, Default)]
 pub(in super::super) struct Inertia {
     pub track: Vec<f64>,

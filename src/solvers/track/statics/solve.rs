@@ -1,9 +1,10 @@
-//! The equilibrium: phases of the supports are tried until none contradicts what it leads to.
+//! The equilibrium: phases of the supports are tried until no support contradicts its phase.
 //!
-//! The energy of the track is convex and quadratic in pieces, one for each choice of the supports' phases. Starting from all
-//! closed, each iteration factors the banded stiffness of its choice, solves, and moves the supports that contradict it; after
-//! [`FLIP_ALL`] of these only the first contradiction is moved, which cannot cycle. Wheels enter by the compliance of that
-//! track at their places and share one Newton iteration with the unknowns of their vehicles.
+//! The energy of the track is convex and piecewise quadratic, with one piece for each set of phases of the supports.
+//! Starting with all supports closed, each iteration factors the banded stiffness for its phases, solves, and moves the
+//! supports that contradict their phase. After [`FLIP_ALL`] iterations only the first contradiction is moved; this
+//! cannot cycle. Wheels enter by the compliance of the track at their places and share one Newton iteration with the
+//! unknowns of their vehicles.
 
 use super::loads::{Inertia, Loads};
 use super::standing::StandingTrain;
@@ -19,8 +20,8 @@ const FLIP_ALL: usize = 20;
 
 /// Finds the equilibrium of the track at `level` under gravity and `loads`.
 ///
-/// Fails where a load stands off the track, where something moves without resistance, or where no choice of phases is
-/// in equilibrium after ten times as many iterations as there are sleepers.
+/// Fails if a load stands off the track, if something moves without resistance, or if no set of phases in equilibrium
+/// is found after ten times as many iterations as there are sleepers.
 pub fn solve_static(track: &Track, level: &TrackLevel, loads: &Loads) -> Result<StaticState, TrackError> {
     solve_with_inertia(track, level, loads, &Inertia::default())
 }

@@ -5,8 +5,9 @@
 //! vehicle:  K y + F = weight
 //! ```
 //!
-//! w is the rail under the wheel without the train and C its compliance there. Linearised, `δ = rest + F/F'`, the system is
-//! symmetric and quasi-definite; vehicle by vehicle it is a skyline as wide as the wheels that feel each other.
+//! w is the rail under the wheel without the train, and C its compliance there. Linearised, `δ = rest + F/F'`, the
+//! system is symmetric and quasi-definite. Ordered vehicle by vehicle it is a skyline matrix, as wide as the group of
+//! wheels that act on each other.
 
 use super::loads::Inertia;
 use super::stiffness::subtract_stiffness;
@@ -18,14 +19,15 @@ use crate::solvers::track::mesh::{RailPoint, Track};
 use crate::solvers::track::{Multibody, SupportPhase, TrackLevel, Train};
 
 const NEWTON_LIMIT: usize = 60;
-/// Wheel forces are converged to this part of the mean one.
+/// Wheel forces are converged to this share of the mean force.
 const FORCE_TOLERANCE: f64 = 1e-13;
-/// Indentations below this are none, m.
+/// Indentations below this count as zero, m.
 const INDENTATION_ROUNDING: f64 = 1e-14;
-/// A compliance below this part of a wheel's own is none.
+/// A compliance below this share of the compliance of the wheel at its own place counts as zero.
 const NEGLIGIBLE: f64 = 1e-18;
 
-/// The wheels of a train at rest, with what the last solve found. Lists run over wheels, vehicle by vehicle, or vehicles.
+/// The wheels of a train at rest, with the results of the last solve. Lists run over wheels, vehicle by vehicle, or
+/// over vehicles.
 pub(super) struct StandingTrain {
     leading: f64,
     bodies: Vec<Body>,
@@ -50,7 +52,7 @@ struct Body {
 }
 
 impl Body {
-    /// Its wheels that are no given force: their index among all and their unknown.
+    /// Its wheels without a given force: their index among all wheels and their unknown.
     fn carrying(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let wheels = self.vehicle.wheels.iter().enumerate();
         wheels.filter_map(|(w, wheel)| Some((self.first_wheel + w, wheel.unknown?)))
@@ -101,7 +103,7 @@ impl StandingTrain {
         Ok(standing)
     }
 
-    /// All that presses the train on the track, N.
+    /// Total static force of the train on the track, N.
     pub fn weight(&self) -> f64 {
         let given: f64 = self.laws.iter().filter_map(WheelLaw::given).sum();
         given + self.bodies.iter().flat_map(|body| &body.weight).sum::<f64>()
@@ -155,7 +157,7 @@ impl StandingTrain {
                 *u += force * c;
             }
         }
-        // One refinement: equilibrium to rounding, whatever the condition of the beam.
+        // One refinement: gives equilibrium to rounding for any condition number of the beam.
         subtract_stiffness(track, phases, &free, &mut steady);
         solve(&mut steady);
         for (u, correction) in free.iter_mut().zip(&steady) {
@@ -164,8 +166,8 @@ impl StandingTrain {
         Ok(free)
     }
 
-    /// Finds wheel forces, indentations and vehicles on a track whose unknowns without the train are `free` and whose
-    /// displacements under a unit force at each wheel are `columns`.
+    /// Finds wheel forces, indentations and vehicles on a track. `free` are its unknowns without the train, `columns`
+    /// its displacements under a unit force at each wheel.
     fn stand(&mut self, track: &Track, free: &[f64], columns: &[Vec<f64>]) -> Result<(), TrackError> {
         let wheels = self.points.len();
         let surface = |(point, unevenness): (&RailPoint, &f64)| track.deflection_at(point, free) + unevenness;
@@ -189,7 +191,7 @@ impl StandingTrain {
         Err(TrackError::NoEquilibrium { x: self.leading, iterations: NEWTON_LIMIT })
     }
 
-    /// What the cubic of their element leaves out between two wheels, m/N.
+    /// Compliance between two wheels that the cubic of their element leaves out, m/N.
     fn local(&self, track: &Track, j: usize, k: usize) -> f64 {
         if self.points[j].element == self.points[k].element {
             track.local_deflection(&self.points[j], &self.points[k])
@@ -198,7 +200,8 @@ impl StandingTrain {
         }
     }
 
-    /// The linearised system and its right-hand side. For each vehicle a row per wheel that carries, then one per unknown.
+    /// The linearised system and its right-hand side. For each vehicle a row per wheel that carries, then one per
+    /// unknown.
     fn assemble(&self, system: &mut Skyline, level: &[f64], compliance: &[Vec<f64>]) -> Vec<f64> {
         let mut rhs = Vec::new();
         let mut row_of_wheel: Vec<Option<usize>> = vec![None; level.len()];
@@ -219,7 +222,7 @@ impl StandingTrain {
                     continue;
                 };
                 for k in 0..=j {
-                    // Only wheels on the rail: the rows of others say F = 0.
+                    // Only wheels in contact; the rows of other wheels are F = 0.
                     let on_rail = self.laws[k].touches(self.indentations[k]);
                     if let Some(column) = row_of_wheel[k].filter(|column| *column >= first && on_rail) {
                         entries[column - first] = compliance[j][k];
@@ -247,7 +250,7 @@ impl StandingTrain {
         rhs
     }
 
-    /// Takes over a solution of the linearised system; whether all wheels meet their law.
+    /// Takes over a solution of the linearised system; returns whether all wheels meet their law.
     fn update(&mut self, solution: &[f64], level: &[f64], compliance: &[Vec<f64>]) -> bool {
         let mut row = 0;
         for (body, unknowns) in self.bodies.iter().zip(&mut self.vehicles) {

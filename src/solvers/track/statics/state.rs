@@ -1,4 +1,4 @@
-//! What an equilibrium is like: deflections, forces and their balance.
+//! The result of an equilibrium: deflections, forces and their balance.
 
 use super::standing::StandingTrain;
 use crate::solvers::track::ends;
@@ -16,15 +16,15 @@ pub struct StaticState {
     pub rail_moment: Vec<f64>,
     /// Force of the rail on the pad, per seat, N.
     pub seat_loads: Vec<f64>,
-    /// Force of the sleeper on its support, per seat, N; 0 for seats without a sleeper. A sleeper that is carried from outside
-    /// is held: a negative force keeps it down.
+    /// Force of the sleeper on its support, per seat, N; 0 for seats without a sleeper. A sleeper carried by external
+    /// forces is held: a negative force keeps it down.
     pub contact_forces: Vec<f64>,
     /// Displacement of sleeper or slab under each seat, m, from the track as built; 0 for rigid seats.
     pub foot_displacements: Vec<f64>,
     /// Per wheel, vehicle by vehicle, N.
     pub wheel_forces: Vec<f64>,
     pub balance: Balance,
-    /// Choices of the supports' phases that were tried.
+    /// Number of sets of phases that were tried.
     pub iterations: usize,
     /// All unknowns of the track.
     pub(in super::super) unknowns: Vec<f64>,
@@ -39,12 +39,13 @@ pub struct StaticState {
 /// The sums of forces in an equilibrium, N, loads downward and supports upward.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Balance {
-    /// Gravity on rails, sleepers and vehicles, and the point loads; a slab lies at rest under its own weight already.
+    /// Gravity on rails, sleepers and vehicles, and the point loads; the weight of a slab is not included, because the
+    /// slab at rest is the reference.
     pub loads: f64,
     /// Force of the sleepers' supports.
     pub sleeper_supports: f64,
     pub rigid_seats: f64,
-    /// Beyond the slabs' own weight.
+    /// Without the weight of the slabs.
     pub slab_foundations: f64,
     pub rail_ends: f64,
 }
@@ -140,7 +141,8 @@ fn slab_reactions(track: &Track, u: &[f64]) -> f64 {
 }
 
 impl StaticState {
-    /// Deflection of the rail at x, m, from the track as built; exact between nodes under point loads. Fails off the track.
+    /// Deflection of the rail at x, m, relative to the track as built; exact between nodes under point loads. Fails if
+    /// x is off the track.
     pub fn rail_deflection_at(&self, track: &Track, x: f64) -> Result<f64, TrackError> {
         let point = track.rail_point(x)?;
         let local: f64 = self

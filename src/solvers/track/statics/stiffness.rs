@@ -4,7 +4,7 @@ use crate::linalg::banded::BandedFactor;
 use crate::solvers::track::mesh::Track;
 use crate::solvers::track::support::SupportPhase;
 
-/// Factors the stiffness that the supports have in their phases; fails with the row of a mechanism.
+/// Factors the stiffness for the phases of the supports; fails with the row of a mechanism.
 pub(super) fn factor(track: &Track, phases: &[SupportPhase]) -> Result<BandedFactor, usize> {
     let mut stiffness = track.stiffness.clone();
     for (sleeper, phase) in track.sleepers.iter().zip(phases) {
@@ -15,7 +15,7 @@ pub(super) fn factor(track: &Track, phases: &[SupportPhase]) -> Result<BandedFac
     stiffness.factor().map_err(|e| e.row)
 }
 
-/// Computes `y -= K u` with the supports in their phases, without the held unknowns' reactions.
+/// Computes `y -= K u` for the phases of the supports, without the reactions of the held unknowns.
 pub(super) fn subtract_stiffness(track: &Track, phases: &[SupportPhase], u: &[f64], y: &mut [f64]) {
     track.stiffness.subtract_product(u, y);
     for (sleeper, phase) in track.sleepers.iter().zip(phases) {

@@ -1,8 +1,8 @@
-//! One load that stands at one place after the other: what a measuring wheel finds at walking speed.
+//! One load at one place after the other, like a measuring wheel at walking speed.
 //!
-//! Every place is an equilibrium of its own, with its own set of support phases. It is unique, so that where the search
-//! for it begins does not matter: it begins with those of the last place, which neighbours mostly share, and with it the
-//! factorised stiffness.
+//! Every place is a separate equilibrium with its own set of support phases. The equilibrium is unique, so the start of
+//! the search does not affect it. The search begins with the phases and the factored stiffness of the last place,
+//! because neighbouring places mostly have the same phases.
 
 use super::loads::{Inertia, Loads};
 use super::solve::solve_static;
@@ -14,11 +14,11 @@ use crate::solvers::track::mesh::Track;
 use crate::solvers::track::support::SupportPhase;
 use crate::solvers::track::{TrackError, TrackLevel};
 
-/// Sets of phases that are tried from the last place's before the search starts anew.
+/// Sets of phases that are tried from the phases of the last place before the search starts anew.
 const TRIES: usize = 6;
 
-/// Deflection of the rail (m, from the track as built) under gravity and `force` (N, down) where that force stands, for
-/// each of `places` (m). Fails as [`solve_static`] does.
+/// Deflection of the rail (m, relative to the track as built) at the force, under gravity and `force` (N, down), for
+/// each of `places` (m) of the force. Fails as [`solve_static`] does.
 pub fn standing_deflections(
     track: &Track,
     level: &TrackLevel,
@@ -44,8 +44,8 @@ pub fn standing_deflections(
     places.iter().map(deflection).collect()
 }
 
-/// Static stiffness at rail level (N/m) at each of `places` (m): `force` (N, down) over the deflection that it adds there to the track
-/// at rest without it. Fails as [`solve_static`] does.
+/// Static stiffness at rail level (N/m) at each of `places` (m): `force` (N, down) divided by the additional deflection
+/// at the force. Fails as [`solve_static`] does.
 pub fn standing_stiffness(
     track: &Track,
     level: &TrackLevel,
@@ -58,9 +58,9 @@ pub fn standing_stiffness(
     places.iter().zip(loaded).map(added).collect()
 }
 
-/// Force of the sleeper on its support (N) and the deflection that it makes there (m) at each of `seats`, under gravity and two wheels of
-/// `force` (N, down): one over the seat, the other `apart` (m) ahead where the rail goes on. 0 at seats without a sleeper. Fails as
-/// [`solve_static`] does.
+/// Force of the sleeper on its support (N) and deflection of the support (m) at each of `seats`, under gravity and two
+/// wheels of `force` (N, down): one over the seat, the other `apart` (m) ahead if the rail goes on there. 0 at seats
+/// without a sleeper. Fails as [`solve_static`] does.
 pub fn forces_under_wheels(
     track: &Track,
     level: &TrackLevel,
@@ -93,7 +93,7 @@ pub fn forces_under_wheels(
     seats.iter().map(under).collect()
 }
 
-/// The phases of the last equilibrium, and its factorised stiffness.
+/// The phases of the last equilibrium, and its factored stiffness.
 struct Search {
     phases: Vec<SupportPhase>,
     factor: Option<BandedFactor>,

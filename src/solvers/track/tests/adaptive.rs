@@ -1,10 +1,10 @@
-//! Steps of varying length against short steps of one length, where sleepers lift off and land.
+//! Steps of varying length against short steps of constant length, with sleepers that lift off and land.
 
 use super::scenes::*;
 use crate::solvers::track::*;
 use std::sync::Arc;
 
-/// Wheel forces every 0.4 ms; every step is as long as it says.
+/// Wheel forces every 0.4 ms; checks that every step has its reported length.
 fn forces(passage: &mut Passage, every: usize) -> (Vec<f64>, Counters) {
     let (mut forces, mut time) = (Vec::new(), 0.0);
     let mut look = |view: &StepView<'_>| {

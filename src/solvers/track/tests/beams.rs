@@ -1,4 +1,4 @@
-//! What a rail is besides Euler–Bernoulli's beam from end to end: shear, joints, auxiliary rails.
+//! Rails beyond a continuous Euler–Bernoulli beam: shear, joints, auxiliary rails.
 
 use super::scenes::*;
 use crate::solvers::track::*;
@@ -31,7 +31,7 @@ fn shear_adds_to_the_deflection() {
         close(bending, 10.4167e-3, 1e-5);
         close(shear, 3.0e-3, 1e-12);
         close(state.rail_deflection_at(&track, 5.0).unwrap(), bending + shear, 1e-12);
-        // Shear moves no moment where the supports are determinate.
+        // Shear does not change a moment if the supports are statically determinate.
         if elements == 2 {
             close(state.rail_moment[1], 1e3 * 10.0 / 4.0, 1e-12);
         }
@@ -51,7 +51,7 @@ fn released_frequency(model: TrackModel, time_step: f64, steps: usize) -> f64 {
     let level = TrackLevel::as_built(&model);
     let stepper = Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::newmark(time_step).unwrap()).unwrap();
     let track = stepper.track();
-    // A load in the shape of the first mode moves no other.
+    // A load with the shape of the first mode excites no other mode.
     let load = |x: &f64| (*x, 1e3 * (PI * x / 10.0).sin());
     let loads: Vec<(f64, f64)> = track.nodes().iter().map(load).collect();
     let state = solve_static(track, &level, &Loads { rail: &loads, ..Loads::default() }).unwrap();
@@ -69,7 +69,7 @@ fn released_frequency(model: TrackModel, time_step: f64, steps: usize) -> f64 {
 #[test]
 fn shear_lowers_the_frequency() {
     let [coarse, fine, found] = [4, 8, 40].map(|elements| released_frequency(thick(elements), 1e-3, 20_000));
-    // The functions of the element are exact at rest; waves of shear converge with the square of its length.
+    // The shape functions of the element are exact at rest; shear waves converge with the square of its length.
     let expected = timoshenko_frequency(1.0);
     close(found, expected, 1e-4);
     let order = ((coarse - expected) / (fine - expected)).log2();
@@ -102,8 +102,8 @@ fn pinned_pinned_frequency() {
     close(timoshenko, 1069.0, 2e-3);
 }
 
-/// A beam clamped at the left, pinned at the right and hinged in the middle: its left half is a cantilever that also carries
-/// what the right half, a beam between hinge and pin, hands over.
+/// A beam clamped at the left, pinned at the right and hinged in the middle: its left half is a cantilever that also
+/// carries the hinge force of the right half, a beam between hinge and pin.
 #[test]
 fn a_hinge_carries_no_moment() {
     let (ei, load, half) = (1e7, 10e3, 50.0f64);
@@ -123,7 +123,7 @@ fn a_hinge_carries_no_moment() {
     }
 }
 
-/// On pads that hardly give, an auxiliary rail adds its bending stiffness and mass to the rail's.
+/// On very stiff pads, an auxiliary rail adds its bending stiffness and mass to the rail.
 #[test]
 fn an_auxiliary_rail_helps_to_carry() {
     let loads = Loads { rail: &[(9.0, 100e3)], ..Loads::default() };

@@ -10,7 +10,7 @@ fn stepper(model: TrackModel, time_step: f64) -> Stepper {
     super::scenes::stepper(model, time_step, RHO)
 }
 
-/// Runs one wagon and hands every step to `look`.
+/// Runs one wagon and passes every step to `look`.
 fn run(
     stepper: &Stepper,
     level: &TrackLevel,
@@ -30,7 +30,7 @@ fn envelope(stepper: &Stepper, level: &TrackLevel, ends: (f64, f64)) -> Envelope
     envelope
 }
 
-/// Deflection of a node over time after a load there is taken away.
+/// Deflection of a node over time after a load there is removed.
 fn release(model: TrackModel, x: f64, load: f64, time_step: f64, steps: usize) -> Vec<f64> {
     let level = TrackLevel::as_built(&model);
     let stepper = stepper(model, time_step);
@@ -43,7 +43,7 @@ fn release(model: TrackModel, x: f64, load: f64, time_step: f64, steps: usize) -
     deflections
 }
 
-/// Mean time between upward zero crossings, inverted.
+/// Inverse of the mean time between upward zero crossings.
 fn frequency(values: &[f64], time_step: f64) -> f64 {
     let crossings: Vec<f64> = (1..values.len())
         .filter(|i| values[i - 1] < 0.0 && values[*i] >= 0.0)
@@ -74,7 +74,7 @@ fn first_frequencies() {
     assert!((found / 5.596 - 1.0).abs() < 4e-3, "cantilever {found}");
 }
 
-/// The error of a linear motion falls with the square of the step, whatever the method.
+/// The error of a linear motion falls with the square of the step, for every method.
 #[test]
 fn second_order_in_time() {
     let schemes = [
@@ -91,7 +91,7 @@ fn second_order_in_time() {
         let end = |steps: usize| {
             let scheme = scheme.clone().unwrap().with_time_step(0.2 / steps as f64).unwrap();
             let stepper = Stepper::new(track.clone(), scheme).unwrap();
-            // A load in the shape of the first mode, so that nothing moves faster than a step.
+            // A load with the shape of the first mode, so that no motion is faster than a step.
             let load = |x: &f64| (*x, 1e3 * (std::f64::consts::PI * x / 10.0).sin());
             let loads: Vec<(f64, f64)> = track.nodes().iter().map(load).collect();
             let state = solve_static(&track, &level, &Loads { rail: &loads, ..Loads::default() }).unwrap();
@@ -109,7 +109,7 @@ fn second_order_in_time() {
     }
 }
 
-/// On rigid ground every wheel keeps the force at which it stands.
+/// On rigid ground every wheel keeps its static force.
 #[test]
 fn rigid_track() {
     let mut model = ballast(50);
@@ -126,7 +126,7 @@ fn rigid_track() {
     assert!(worst < 1e-9, "{worst:.3e}");
 }
 
-/// On an even track only the passing of sleepers moves the wheels, from the first step on.
+/// On an even track only the sleeper passing moves the wheels, from the first step on.
 #[test]
 fn even_track_is_steady() {
     let model = ballast(80);
@@ -145,8 +145,8 @@ fn even_track_is_steady() {
     assert!(within(early) && within(late));
 }
 
-/// A rail that shears has a kink over each seat, which a wheel feels all along an even track; that it starts on one adds
-/// nothing.
+/// A rail with shear has a kink over each seat, which acts on a wheel all along an even track; a start on a kink causes
+/// no additional motion.
 #[test]
 fn a_start_on_a_kink_is_steady() {
     let mut model = ballast(80);
@@ -187,7 +187,7 @@ fn direction_mirrors() {
     }
 }
 
-/// Sleepers held up and let go bounce on their supports; nothing feeds them.
+/// Sleepers that are lifted and released bounce on their supports and lose energy.
 #[test]
 fn bouncing_loses_energy() {
     let seats = Some(Seating { stiffness: 10e6, closure: 0.2e-3 });
@@ -237,7 +237,7 @@ fn bouncing_loses_energy() {
     }
 }
 
-/// Voids open and close under a wagon: half the step, the same peaks.
+/// Voids open and close under a wagon: with half the step, the peaks are the same.
 #[test]
 fn peaks_do_not_hang_on_the_step() {
     let model = transition(45, 20);
@@ -258,7 +258,7 @@ fn peaks_do_not_hang_on_the_step() {
     println!("peaks change by {worst:.2e} with half the step; largest contact force {largest:.0} N");
     assert!(worst < 0.02);
     assert!(fine.contact_losses.iter().any(|t| *t > 0.0));
-    // Every axle leaves its peak, and the largest of them is the peak.
+    // Every axle gives a peak, and the largest axle peak is the peak of the seat.
     for seat in 20..40 {
         let axles = fine.axle_peaks_of(seat);
         assert_eq!(axles.len(), 4);
@@ -288,7 +288,7 @@ fn peaks_do_not_hang_on_the_mesh() {
     assert!(change / largest < 0.02);
 }
 
-/// Vehicles that share a track only through it: two wagons far apart are each as one.
+/// Vehicles coupled only by the track: two wagons far apart each behave like one.
 #[test]
 fn wagons_of_a_train() {
     let model = ballast(90);

@@ -1,10 +1,10 @@
-//! Rail ends behind which the track goes on.
+//! Rail ends beyond which the track goes on.
 
 use super::scenes::*;
 use crate::solvers::track::*;
 use std::sync::Arc;
 
-/// Ballast of which the rail rings: light damping everywhere.
+/// Ballasted track with a vibrating rail: light damping everywhere.
 fn ringing(seats: usize, rail_ends: RailEnds) -> TrackModel {
     let mut model = ballast(seats);
     model.rail_ends = rail_ends;
@@ -15,7 +15,7 @@ fn ringing(seats: usize, rail_ends: RailEnds) -> TrackModel {
     model
 }
 
-/// Near an end the track is as stiff as if it went on.
+/// Near an end the track is as stiff as if it were continuous.
 #[test]
 fn the_track_goes_on_at_rest() {
     let deflection = |bays: usize, x: f64, rail_ends| {
@@ -36,7 +36,7 @@ fn the_track_goes_on_at_rest() {
     }
 }
 
-/// Deflection of the rail 9 m from the right end after a load there is taken away.
+/// Deflection of the rail 9 m from the right end after a load there is removed.
 fn ring(bays: usize, rail_ends: RailEnds) -> Vec<f64> {
     let model = ringing(bays, rail_ends);
     let level = TrackLevel::as_built(&model);
@@ -52,8 +52,8 @@ fn ring(bays: usize, rail_ends: RailEnds) -> Vec<f64> {
     deflections
 }
 
-/// Waves that reach an absorbing end come back weaker than from a clamped one. The reference is a track so long that its
-/// ends are heard later.
+/// Waves reflected by an absorbing end are weaker than by a clamped end. The reference is a track so long that its
+/// reflections arrive later.
 #[test]
 fn waves_leave_through_an_absorbing_end() {
     let model = |ends| ring(60, ends);

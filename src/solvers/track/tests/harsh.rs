@@ -1,9 +1,10 @@
-//! Harsh scenes: a passage gives a sound answer, or an error that says where and when.
+//! Extreme scenes: a passage gives a correct result, or an error with place and time.
 
 use super::scenes::*;
 use crate::solvers::track::*;
 
-/// Mean of all wheel forces together over a passage, of the weight; the largest and smallest wheel force, of the static one.
+/// Mean of the total wheel force over a passage, divided by the weight; the largest and smallest wheel force, divided
+/// by the static force.
 struct Outcome {
     mean: f64,
     most: f64,
@@ -37,7 +38,7 @@ fn pass(
     Ok(Outcome { mean: sum / f64::from(count), ..outcome })
 }
 
-/// Every scene runs, no wheel is pulled, and in the mean the wheels carry the weight.
+/// Every scene runs, no wheel force is negative, and the mean of the wheel forces is the weight.
 #[test]
 fn harsh_scenes_are_sound() {
     let plain = || transition(45, 20);
@@ -94,7 +95,7 @@ fn harsh_scenes_are_sound() {
     }
 }
 
-/// A motion that grows is stopped where it passes what makes sense.
+/// A growing motion is stopped when it passes the limits.
 #[test]
 fn growth_is_found_early() {
     let model = ballast(40);

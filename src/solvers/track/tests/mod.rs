@@ -1,4 +1,4 @@
-//! Cases with known answers, by what they exercise.
+//! Test cases with known results, by subject.
 
 mod adaptive;
 mod beams;

@@ -1,10 +1,10 @@
-//! Momentum of track and train: what gravity and the supports leave over moves them, at every step and over a passage.
+//! Momentum of track and train: it changes by the sum of gravity and support forces, in every step and over a passage.
 
 use super::scenes::*;
 use crate::solvers::track::*;
 use std::sync::Arc;
 
-/// Forces and rates of momentum at one time, N: all of the vehicles, and all of the track.
+/// Forces and rates of momentum at one time, N: of all vehicles, and of the whole track.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     wheels: f64,
@@ -15,8 +15,8 @@ struct Sums {
     track_momentum: f64,
 }
 
-/// Momentum of a rail and sleepers with these velocities (or its rate, with accelerations): the integral of the cubics is that
-/// of a line and `h²/12` of the difference of the slopes.
+/// Momentum of a rail and sleepers with these velocities (or its rate, with accelerations): the integral of the cubics
+/// is the integral of a line plus `h²/12` times the difference of the slopes.
 fn of_track(track: &Track, v: &[f64]) -> f64 {
     let rail: f64 = (0..track.nodes.len() - 1)
         .map(|e| {
@@ -72,14 +72,14 @@ fn momentum_is_balanced() {
         for _ in 0..passage.planned_steps() {
             passage.step().unwrap();
             let now = sums(&passage, &vehicle);
-            // The equation of motion holds for the means that the method takes within a step.
+            // The equation of motion holds for the means of the method within a step.
             let mean = |of: fn(&Sums) -> f64, alpha: f64| (1.0 - alpha) * of(&now) + alpha * of(&before);
             let force = |of| mean(of, scheme.alpha_f);
             let rate = |of| mean(of, scheme.alpha_m);
             let vehicles = weight - force(|s| s.wheels) - rate(|s| s.vehicles_inertia);
             let track = track_weight + force(|s| s.wheels) - force(|s| s.supports) - rate(|s| s.track_inertia);
             worst = worst.max(vehicles.abs() / weight).max(track.abs() / weight);
-            // Over a passage the mean of both ends of each step is as good.
+            // Over a passage the mean of both ends of each step is equivalent.
             impulses[0] += 0.5 * dt * (2.0 * weight - now.wheels - before.wheels);
             let on_track = |s: &Sums| track_weight + s.wheels - s.supports;
             impulses[1] += 0.5 * dt * (on_track(&now) + on_track(&before));

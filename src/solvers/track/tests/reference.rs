@@ -1,7 +1,7 @@
-//! The passage against a plain implementation: one dense system for track and vehicle, factored in every iteration of a full
-//! Newton method, without influence columns, phases or contact compliances.
+//! The passage against a plain implementation: one dense system for track and vehicle, factored in every iteration of a
+//! full Newton method, without influence columns, phases or contact compliances.
 //!
-//! Its support law climbs the jump at contact along a ramp 1e-12 m wide.
+//! Its support law replaces the jump at contact by a ramp 1e-12 m wide.
 
 use super::scenes::*;
 use crate::solvers::track::*;
@@ -73,7 +73,7 @@ impl<'a> Plain<'a> {
         }
     }
 
-    /// How a unit of each wheel's force acts on all unknowns, with the compliance and the unevenness of the rail there.
+    /// Effect of a unit force of each wheel on all unknowns, with the compliance and the unevenness of the rail there.
     fn directions(&self, positions: &[f64]) -> Vec<(DVector<f64>, f64, f64)> {
         let n = self.track.order();
         let direction = |(w, x): (usize, &f64)| {
@@ -88,7 +88,7 @@ impl<'a> Plain<'a> {
         positions.iter().enumerate().map(direction).collect()
     }
 
-    /// Force and its derivative of a wheel that approaches the rail's nodes by `approach`.
+    /// Force and its derivative for a wheel that approaches the rail nodes by `approach`.
     fn wheel(&self, w: usize, approach: f64, local: f64) -> (f64, f64) {
         match self.contacts[w] {
             WheelContact::Given(force) => (force, 0.0),
@@ -206,7 +206,8 @@ impl<'a> Plain<'a> {
             }
             assert!(iteration < 200, "the plain Newton method fails, residual {size} N");
             let step = jacobian.lu().solve(&r).unwrap();
-            // The residual is the gradient of a convex function: go where it stops to fall along the step.
+            // The residual is the gradient of a convex function: go to the point at which it stops falling along the
+            // step.
             let fall = |factor: f64| step.dot(&residual(&(&a - factor * &step), None).0);
             let (mut low, mut factor) = (0.0, 1.0);
             if fall(1.0) < -0.1 * step.dot(&r) {
@@ -229,8 +230,8 @@ impl<'a> Plain<'a> {
     }
 }
 
-/// Largest differences of wheel forces and support forces, N, and of displacements, m; changes of phase, and supports that
-/// were touching, over all steps.
+/// Largest differences of wheel forces and support forces, N, and of displacements, m; number of phase changes, and of
+/// touching supports, over all steps.
 fn compare(passage: &mut Passage<'_>, vehicle: &Multibody, steps: usize) -> ([f64; 3], usize, usize) {
     let mut plain = Plain::new(passage, vehicle);
     let (mut worst, mut changes, mut touching) = ([0.0f64; 3], 0, 0);
@@ -252,13 +253,13 @@ fn compare(passage: &mut Passage<'_>, vehicle: &Multibody, steps: usize) -> ([f6
 
 #[test]
 fn agrees_with_a_plain_implementation() {
-    // A short wagon, so that a short track carries it.
+    // A short wagon, so that a short track is sufficient.
     let vehicle =
         Vehicle { bogie_spacing: 1.3, wheelset_spacing: 0.5, car_body_mass: 6e3, car_body_inertia: 4e3, ..wagon() };
     let train = Train::single(vehicle, Direction::Forward);
     let mut seen = 0;
-    // Voids under the middle of the track close ahead of the wagon and open behind it; strong dampers make sleepers touch
-    // before they close; at last every third sleeper alone carries.
+    // Voids under the middle of the track close before the wagon and open behind it; strong dampers make sleepers touch
+    // before they close; in the last case only every third sleeper carries.
     for (damping, void, every, time_step, speed) in
         [(50e3, 1e-3, 1, 1e-4, 55.56), (2e6, 1e-3, 1, 1e-4, 55.56), (10e3, 4e-3, 3, 2e-4, 90.0)]
     {
@@ -280,7 +281,7 @@ fn agrees_with_a_plain_implementation() {
         let steps = passage.planned_steps();
         let (worst, changes, touching) = compare(&mut passage, &vehicle.into(), steps);
         let still = vehicle.mass() * 9.81 / 4.0;
-        // Where sleepers touch, the plain method stops at half a newton on its ramp, and that is what differs.
+        // If sleepers touch, the plain method stops at half a newton on its ramp, which is the difference.
         let (force, displacement) = if touching > 0 { (1e-4 * still, 1e-9) } else { (1e-6 * still, 1e-12) };
         assert!(worst[0] < force && worst[1] < force && worst[2] < displacement, "{worst:?}");
         assert!(changes >= 4);

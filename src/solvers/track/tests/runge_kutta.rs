@@ -25,7 +25,7 @@ const SPEED: f64 = 200.0 / 3.6;
 const OUTPUT: f64 = 1e-4;
 const START: f64 = 11.0;
 
-/// Forces at every output time: wheels, seats, supports; and the time in which each support hung.
+/// Forces at every output time: wheels, seats, supports; and the time in which each support carried no force.
 struct Forces {
     wheels: Vec<[f64; 4]>,
     seats: Vec<Vec<f64>>,
@@ -79,8 +79,8 @@ fn integrated_in_time(oracle: Oracle, start: Vec<f64>, tolerance: f64, outputs: 
     (found, run.events)
 }
 
-/// Largest differences over time as parts of the static wheel force: wheels, seats; impulses of the supports, as parts of
-/// a wheel's; time of hanging, s.
+/// Largest differences over time divided by the static wheel force: wheels, seats; impulses of the supports, divided by
+/// the impulse of a wheel; time without support force, s.
 fn differences(a: &Forces, b: &Forces, still: f64) -> [f64; 4] {
     assert_eq!(a.wheels.len(), b.wheels.len());
     let largest = |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0f64, |m, (a, b)| m.max((a - b).abs() / still));
@@ -110,13 +110,13 @@ fn parabola([start, length, depth]: [f64; 3]) -> Irregularity {
 }
 
 struct Study {
-    /// Smallest wheel force of the oracle, as a part of the static one, and the largest.
+    /// Smallest and largest wheel force of the oracle, divided by the static force.
     wheels: (f64, f64),
-    /// Differences of the solver to the oracle for each method and time step.
+    /// Differences between the solver and the oracle for each method and time step.
     errors: Vec<Vec<[f64; 4]>>,
-    /// Distance of the oracle to itself with a coarser tolerance.
+    /// Difference between the oracle and the oracle with a coarser tolerance.
     own: [f64; 4],
-    /// Supports that began or ceased to carry.
+    /// Number of changes of supports between carrying and open.
     events: usize,
 }
 
@@ -163,7 +163,7 @@ fn order(errors: &[[f64; 4]], of: usize) -> f64 {
     points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>() / points.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>()
 }
 
-/// A light wagon on an even track lifts nothing: the motion is smooth.
+/// A light wagon on an even track lifts no sleeper: the motion is smooth.
 #[test]
 fn closed_contacts_are_of_second_order() {
     let light = Vehicle { car_body_mass: 9e3, car_body_inertia: 9e3 * 3.91 * 3.91, ..wagon() };
@@ -180,7 +180,7 @@ fn closed_contacts_are_of_second_order() {
     }
 }
 
-/// Five sleepers over voids of up to 3 mm, and those that a heavy wagon lifts ahead of and behind its bogies.
+/// Five sleepers over voids of up to 3 mm, and the sleepers that a heavy wagon lifts ahead of and behind its bogies.
 #[test]
 fn lift_off_converges_to_the_exact_motion() {
     let voids = |model: &TrackModel| {
@@ -200,13 +200,13 @@ fn lift_off_converges_to_the_exact_motion() {
         for (dt, error) in TIME_STEPS.iter().zip(errors) {
             assert!(error[3] < 1.5 * dt, "hanging differs by {:.2} steps, found up to 0.9", error[3] / dt);
         }
-        // A contact that switches within a step leaves an error of first order in what hangs on it.
+        // A contact that switches within a step leaves a first-order error in the values that depend on it.
         let orders = [0, 1, 2].map(|of| order(errors, of));
         assert!(orders[0] > 1.5 && orders[1] > 0.6 && orders[2] > 0.6, "found 1.76, 0.85, 0.88: {orders:?}");
     }
 }
 
-/// Over a dip 0.9 m long and 4 mm deep wheels leave the rail and strike it with 3.6 times their static force.
+/// Over a dip 0.9 m long and 4 mm deep wheels lift off the rail and hit it with 3.6 times their static force.
 #[test]
 fn wheels_that_leave_the_rail() {
     let found = study(TrackLevel::as_built, wagon(), Some([12.0, 0.9, 4e-3]), 500);

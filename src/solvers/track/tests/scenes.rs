@@ -1,4 +1,4 @@
-//! The tracks and vehicles that the tests share.
+//! Tracks and vehicles shared by the tests.
 
 use crate::solvers::track::*;
 use std::sync::Arc;

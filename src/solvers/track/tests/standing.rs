@@ -1,4 +1,4 @@
-//! A load that stands at many places: the plain solver at each of them, and closed forms.
+//! One load at many places: compared with the plain solver at each place, and with closed forms.
 
 use super::scenes::*;
 use crate::solvers::track::*;
@@ -52,7 +52,7 @@ fn a_uniform_track_is_as_stiff_as_winkler_says() {
         for value in [seat, bay] {
             assert!((value / closed_form - 1.0).abs() < 0.02, "{support} N/m: {value} against {closed_form}");
         }
-        // under a wheel the sleepers that the rail lifts pull less: softer, by little
+        // under a wheel, sleepers that the rail lifts pull less: the track is slightly softer
         let wheel = stiffness(30.0, 98.1e3);
         assert!(wheel <= seat * (1.0 + 1e-9) && wheel > 0.99 * seat, "{wheel} and {seat}");
     }

@@ -180,7 +180,7 @@ fn slabs_that_meet() {
     assert!(state.rail_deflection_at(&track, 6.0).unwrap() > 0.0);
 }
 
-/// Sleepers that all carry the same sink as one spring in two pieces.
+/// Sleepers that all carry the same load settle like one spring with two stiffnesses.
 #[test]
 fn a_support_that_seats() {
     let (soft, stiff, closure) = (8e6, 50e6, 0.5e-3);
@@ -202,7 +202,7 @@ fn a_support_that_seats() {
             close(state.contact_forces[seat], force, 1e-10);
         }
     }
-    // Under a wagon some supports are closed, some seat and some hang; all together they carry it.
+    // Under a wagon some supports are closed, some are seating and some are open; together they carry the wagon.
     let model = seated(30, 9.81);
     let level = hollow(&model, 0.0, 4e-3, 13.0, 2.0);
     let train = Train::single(Vehicle { bogie_spacing: 2.5, ..wagon() }, Direction::Forward);

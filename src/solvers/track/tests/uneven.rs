@@ -1,10 +1,10 @@
-//! An uneven rail and a speed that changes: closed forms on a rigid track, and what must not change anything.
+//! An uneven rail and a varying speed: closed forms on a rigid track, and changes that must have no effect.
 
 use super::scenes::*;
 use crate::solvers::track::*;
 use std::f64::consts::PI;
 
-/// A track that does not give way.
+/// A rigid track.
 fn rigid(irregularity: Irregularity) -> TrackModel {
     let mut model = ballast(50);
     model.rail[0].bending_stiffness = 6.4e14;
@@ -60,7 +60,7 @@ fn a_sprung_mass_on_waves() {
     assert!(found < 2e-4);
 }
 
-/// With a damper, once the start is forgotten: `|F - m g| = m ω² A |(k + i ω c)/(k - m ω² + i ω c)|`.
+/// With a damper, after the initial motion has decayed: `|F - m g| = m ω² A |(k + i ω c)/(k - m ω² + i ω c)|`.
 #[test]
 fn a_damped_mass_on_waves() {
     let (size, length, begin, c) = (1e-3, 0.9, 4.0, 3e4);
@@ -75,7 +75,8 @@ fn a_damped_mass_on_waves() {
     assert!((late.1 / expected - 1.0).abs() < 2e-3 && (late.0 / expected + 1.0).abs() < 2e-3);
 }
 
-/// A dip `r = D/2 (1 - cos ω t)`: `y = D/2 (1 - cos ω_0 t) - D/2 ω_0²/(ω_0² - ω²) (cos ω t - cos ω_0 t)` while it lasts.
+/// A dip `r = D/2 (1 - cos ω t)`: within the dip
+/// `y = D/2 (1 - cos ω_0 t) - D/2 ω_0²/(ω_0² - ω²) (cos ω t - cos ω_0 t)`.
 #[test]
 fn a_sprung_mass_in_a_dip() {
     let (depth, length, begin) = (2e-3, 3.0, 6.0);
@@ -97,7 +98,7 @@ fn a_sprung_mass_in_a_dip() {
     }
 }
 
-/// A surface that lies lower everywhere, and a profile of one speed, change nothing.
+/// A surface that is lower everywhere by the same amount, and a profile of one speed, have no effect.
 #[test]
 fn a_level_offset_changes_nothing() {
     let run = |offset: Option<f64>, motion: Motion| {
@@ -123,7 +124,7 @@ fn a_level_offset_changes_nothing() {
     }
 }
 
-/// A train that slows down is where the closed form says in every step, and stops within a step of the finish.
+/// A train that slows down is at the position of the closed form in every step, and stops within a step of the finish.
 #[test]
 fn a_train_that_slows_down() {
     let model = ballast(60);

@@ -6,7 +6,7 @@ use crate::solvers::track::*;
 use nalgebra::DMatrix;
 use std::f64::consts::PI;
 
-/// Eigenfrequencies, Hz, rising, with the last `fixed` unknowns held.
+/// Eigenfrequencies, Hz, ascending, with the last `fixed` unknowns held.
 fn frequencies(vehicle: &Multibody, fixed: usize) -> Vec<f64> {
     let n = vehicle.order() - fixed;
     let scaled = |i, j| vehicle.stiffness[(i, j)] / (vehicle.masses[i] * vehicle.masses[j]).sqrt();
@@ -29,12 +29,12 @@ fn wagon_frequencies() {
         let expected = square.sqrt() / (2.0 * PI);
         assert!(found.iter().any(|f| (f / expected - 1.0).abs() < 1e-9), "{expected} not in {found:?}");
     }
-    // On stiff primary springs it is the secondary springs alone.
+    // With stiff primary springs only the secondary springs act.
     let stiff = frequencies(&Vehicle { primary_stiffness: 1e12, ..wagon }.into(), 4);
     assert!(stiff.iter().any(|f| (f - 1.613).abs() < 5e-4), "{stiff:?}");
 }
 
-/// A free vehicle swings in its modes at its eigenfrequencies.
+/// A free vehicle vibrates in its modes at its eigenfrequencies.
 #[test]
 fn a_vehicle_swings_at_its_frequencies() {
     let wagon = Vehicle { primary_damping: 0.0, secondary_damping: 0.0, ..wagon() };
@@ -70,7 +70,7 @@ const MASS: f64 = 2303.0;
 const SPEED: f64 = 100.0 / 3.6;
 const LOAD: f64 = 5750.0 * 9.81;
 
-/// Mid-span deflection and first unknown of a vehicle that crosses a beam, over time.
+/// Mid-span deflection and first unknown of a vehicle that crosses a beam, as functions of time.
 fn cross(span: f64, vehicle: Multibody, time_step: f64) -> Vec<(f64, f64, f64)> {
     let model = beam(span, STIFFNESS, MASS, RailEnds::Pinned, 40);
     let level = TrackLevel::as_built(&model);
@@ -122,7 +122,8 @@ fn sprung_mass_on_a_beam() {
     assert!((1e3 * body - 2.590).abs() < 1e-3, "{body}");
 }
 
-/// The vehicle of two masses of Biggs (1964) on a bridge of 50 m, against modes of the bridge and a Runge–Kutta method.
+/// The two-mass vehicle of Biggs (1964) on a bridge of 50 m, compared with modes of the bridge and a Runge–Kutta
+/// method.
 #[test]
 fn two_masses_on_a_beam() {
     let (span, wheel, body, k, c, contact) = (50.0, 5750.0, 3000.0, 159.5e6, 1e3, 1e10);
@@ -171,7 +172,7 @@ fn two_masses_on_a_beam() {
     assert!(worst < 1e-3 && worst_body < 3e-3, "{worst} {worst_body}");
 }
 
-/// A slow force on a beam on springs 1 m apart: the deflection of a Winkler foundation runs along.
+/// A slow force on a beam on springs 1 m apart: the deflection of a Winkler foundation moves with the force.
 #[test]
 fn moving_force_on_springs() {
     let (ei, k, load) = (4.41e5, 2.75e5, 18e3);
@@ -195,7 +196,7 @@ fn moving_force_on_springs() {
     assert!((range.0 / 20.5645e-3 - 1.0).abs() < 0.01 && (range.1 / 20.5645e-3 - 1.0).abs() < 0.01);
 }
 
-/// Statics of every kind of wheel: the track carries the weight, and a given force is what it is.
+/// Statics of every kind of wheel: the track carries the weight, and a given force keeps its value.
 #[test]
 fn every_kind_of_wheel_stands() {
     let model = ballast(30);

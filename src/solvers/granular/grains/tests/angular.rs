@@ -1,4 +1,4 @@
-//! Angular surfaces: rounded polyhedra against closed forms, and indices that are those asked for.
+//! Angular surfaces: rounded polyhedra against closed forms, and shape indices against the required values.
 
 use super::super::super::shape::{Mesh, MeshKind};
 use super::super::angular::TOLERANCE;
@@ -77,7 +77,7 @@ proptest! {
         prop_assert!((form.flatness() / flatness - 1.0).abs() < TOLERANCE, "{} {flatness}", form.flatness());
         prop_assert!((form.elongation() / elongation - 1.0).abs() < TOLERANCE, "{} {elongation}", form.elongation());
         prop_assert!((form.volume / (PI / 6.0) - 1.0).abs() < 1e-9);
-        // the ball that rounds its edges is the asked share of the largest that fits into it
+        // the ball that rounds its edges is the required share of the largest ball that fits into it
         prop_assert!(GrainForm::of_surface(&surface).sphericity() < 1.0);
     }
 }

@@ -1,4 +1,4 @@
-//! Pebbles in surfaces: inside them, by the rule, as many as asked for.
+//! Pebbles in surfaces: inside the surface, by the rule, and in the required number.
 
 use super::super::super::clump::Pebble;
 use super::super::super::shape::Mesh;
@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 const PAPER: Rule = Rule { pebbles: [1, 50], ratio: 0.8, distance: 110.0 * PI / 180.0 };
 
-/// φ of two balls that overlap, deg.
+/// φ of two overlapping balls, deg.
 fn angle(a: &Pebble, b: &Pebble) -> f64 {
     let apart = (a.centre - b.centre).norm();
     let theta = (a.radius.powi(2) + b.radius.powi(2) - apart * apart) / (2.0 * a.radius * b.radius);

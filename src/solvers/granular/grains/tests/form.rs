@@ -6,7 +6,7 @@ use super::super::*;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use std::f64::consts::PI;
 
-/// A mesh whose vertices are moved.
+/// A mesh with moved vertices.
 fn moved(mesh: &Mesh, to: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> Mesh {
     Mesh::new(mesh.vertices().iter().map(to).collect(), mesh.triangles().to_vec(), MeshKind::Solid).unwrap()
 }
@@ -50,7 +50,7 @@ fn a_ball_is_round() {
 
 #[test]
 fn the_box_is_the_smallest_one() {
-    // of a regular tetrahedron in a cube of side 1: its volume is 1, and no other box has less
+    // a regular tetrahedron in a cube of side 1: the volume of this box is 1, and no other box is smaller
     let corners =
         [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]].map(|c| turn() * Vector3::from(c));
     let around = Box::round(|n| extent(&corners, n));

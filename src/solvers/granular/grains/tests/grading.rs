@@ -1,4 +1,4 @@
-//! Samples against their curves, of every kind of curve.
+//! Samples against their curves, for every kind of curve.
 
 use super::super::*;
 use proptest::prelude::*;
@@ -13,7 +13,7 @@ fn of_count(curve: &Curve, count: usize, seed: u64) -> Sample {
     curve.sample(count as f64 * curve.mean_volume(), seed).unwrap()
 }
 
-/// A sample with as many grains of the same curve, drawn one by one from very many.
+/// A sample with the same number of grains of the same curve, drawn one by one from a very large number.
 fn without_strata(curve: &Curve, count: usize, seed: u64) -> Sample {
     let many = of_count(curve, 20_000, seed).sizes;
     let mut random = Random::new(seed, 77);
@@ -22,7 +22,8 @@ fn without_strata(curve: &Curve, count: usize, seed: u64) -> Sample {
     Sample { sizes, curve: curve.clone(), volume }
 }
 
-/// Share of the mass in the largest grain: no sample of whole grains comes nearer to the curve than half of it.
+/// Share of the mass in the largest grain: the difference between a sample of whole grains and the curve is at least
+/// half of it.
 fn largest_share(sample: &Sample) -> f64 {
     PI / 6.0 * sample.sizes.iter().copied().fold(0.0, f64::max).powi(3) / sample.volume
 }
@@ -120,9 +121,9 @@ fn every_template_has_its_share_of_the_grains() {
 
 #[test]
 fn what_a_curve_fills_follows_from_its_sizes() {
-    // spheres of one size, packed densely by chance
+    // spheres of one size, dense random packing
     assert_eq!(Curve::single(0.05).unwrap().solid_share(), 0.634);
-    // the same from the sizes of many grains, and more of the space the more they differ
+    // the same from the sizes of many grains, and a larger solid share for a wider grading
     let wide = Curve::new(&[[0.025, 0.0], [0.0375, 0.27], [0.05, 0.4], [0.1, 0.8], [0.15, 1.0]]).unwrap();
     let shares = [ballast(), wide].map(|curve| {
         let sizes = of_count(&curve, 20_000, 1).sizes;
@@ -157,7 +158,7 @@ proptest! {
         let sample = of_count(&curve, count, seed);
         let [finest, coarsest] = curve.ends();
         prop_assert!(sample.sizes.iter().all(|d| (finest * (1.0 - 1e-12)..=coarsest * (1.0 + 1e-12)).contains(d)));
-        // a coarse end of less than one grain has none
+        // a coarse end with less than one grain gets none
         let asked = count as f64 * curve.mean_volume();
         let grain = PI / 6.0 * coarsest.powi(3) / asked;
         prop_assert!(sample.error() < 1.5 * grain, "{} {grain}", sample.error());

@@ -1,4 +1,4 @@
-//! Errors of shape against closed forms, and falling with pebbles.
+//! Shape errors against closed forms; they fall with the number of pebbles.
 
 use super::super::super::clump::Template;
 use super::super::super::shape::Mesh;
@@ -16,7 +16,7 @@ fn a_ball_is_like_a_ball() {
 fn a_ball_in_place_of_a_cube_is_wrong_by_what_it_must() {
     let cube = Mesh::block(Vector3::repeat(0.5)).unwrap();
     let error = Misfit::between(&cube, &Template::sphere(0.1).unwrap());
-    // R³ = 3/4π: six caps of the ball stand out, and as much of the cube's corners is missing
+    // R³ = 3/4π: six caps of the ball stick out, and the same volume of the cube's corners is missing
     let radius = 0.620_350_490_899_4_f64;
     let height = radius - 0.5;
     let caps = 6.0 * std::f64::consts::PI * height * height * (3.0 * radius - height) / 3.0;

@@ -1,4 +1,4 @@
-//! Surfaces through files and back, and files that are none.
+//! Surfaces written to files and read back, and files that are not valid.
 
 use super::super::super::shape::{FaultKind, Mesh};
 use super::super::stl::{StlError, read, write};
@@ -10,7 +10,7 @@ fn stone() -> Mesh {
     Angular { flatness: 0.7, elongation: 0.7, roundness: 0.1 }.surface(1, 0).unwrap()
 }
 
-/// The surface as text, its corners to so many digits.
+/// The surface as text, its corners with `digits` digits.
 fn text(mesh: &Mesh, digits: usize) -> String {
     let mut text = "solid a stone of facets\n".to_string();
     for corners in mesh.triangles() {
@@ -42,7 +42,7 @@ fn a_binary_file_may_say_solid() {
 fn a_text_gives_the_surface_back_and_close_corners_are_one() {
     let block = Mesh::block(Vector3::new(30.0, 20.0, 10.0)).unwrap();
     assert_eq!(read(text(&block, 9).as_bytes()).unwrap().vertices().len(), 8);
-    // in capitals; a corner that is not quite where it was
+    // in capitals; with one corner slightly moved
     let moved = text(&block, 9).to_uppercase().replacen("-30.000000000 ", "-29.999990000 ", 1);
     let again = read(moved.as_bytes()).unwrap();
     assert_eq!((again.vertices().len(), again.triangles().len()), (8, 12));

@@ -1,4 +1,4 @@
-//! Grains between and beside a sleeper: where they lie, that they rest, and that their number of threads changes nothing.
+//! Grains between and beside a sleeper: their positions, their rest, and results independent of the number of threads.
 
 use super::super::pocket::Pocket;
 use super::*;
@@ -6,7 +6,7 @@ use crate::solvers::granular::{Party, WallId};
 
 const CRIB: Crib = Crib { height: 0.12, shoulder: 0.1 };
 
-/// The small bed with a sleeper of 0.3 m x 1 m, half of which stands on it, and its cribs filled.
+/// The small bed with a sleeper of 0.3 m x 1 m (half of it stands on the bed) and its cribs filled.
 fn filled(crib: Crib) -> (Bed<f32>, Sleeper, WallId, Filling) {
     let recipe = recipe([0.6; 2], 0.2, [0.05, 0.07], 0.7, false);
     let filling = crib.filling(&recipe, 1).unwrap();
@@ -34,7 +34,7 @@ fn grains_fill_the_crib_to_its_height_and_rest_beside_the_sleeper() {
     // on the flat bed coarse spheres lie in layers 0.8 of their size apart, and the last one fits or does not
     let open = pocket.empty(&bed, CRIB.height) / (pocket.area * CRIB.height);
     assert!(open * CRIB.height < 0.8 * 0.06, "{open} of the space lies above the grains");
-    // all but a few that roll off the edge of the shoulder or under the sleeper lie in the pocket
+    // all grains but a few that roll off the edge of the shoulder or under the sleeper lie in the pocket
     let outside = poured.iter().filter(|grain| !pocket.holds([grain.place[0], grain.place[1]], 0.0)).count();
     assert!(outside * 50 < poured.len(), "{outside} of {}", poured.len());
     let solid: f64 = poured.iter().map(|grain| grain.mass / 2700.0).sum();
@@ -44,14 +44,15 @@ fn grains_fill_the_crib_to_its_height_and_rest_beside_the_sleeper() {
     let snapshot = bed.snapshot().unwrap();
     let deepest = snapshot.contacts.iter().map(|contact| contact.overlap).fold(0.0, f64::max);
     assert!(deepest < 0.02 * 0.025, "{deepest} m");
-    // the crib leans on the sides of the sleeper
+    // grains of the crib touch the sides of the sleeper
     let beside = snapshot.contacts.iter().filter(|contact| {
         let on_sleeper =
             [contact.first, contact.second].iter().any(|party| matches!(party, Party::Wall(w) if *w == wall));
         on_sleeper && contact.normal[2].abs() < 0.1
     });
     assert!(beside.count() > 5, "few grains touch the sides of the sleeper");
-    // what walls feel is the weight of all grains, but for the 0.2 % of all forces between them that may be out of balance
+    // the force on the walls is the weight of all grains, except for the 0.2 % of all contact forces that may be out of
+    // balance
     let weight = 9.81 * bed.states().map(|grain| grain.mass).sum::<f64>();
     let felt: f64 = bed.walls().iter().map(|wall| wall.felt().force.z).sum();
     assert!((felt / -weight - 1.0).abs() < 0.02, "{felt} N for {weight} N");
@@ -85,7 +86,7 @@ fn a_crib_too_narrow_for_its_grains_is_told() {
     let walls = stand(&mut bed, std::slice::from_ref(&sleeper), 9.81, |_| {}).unwrap();
     let error = fill(&mut bed, (&[sleeper], &walls), &filling, |_| {}).unwrap_err();
     assert!(
-        error == RigError::NoRoom { layer: "stone".into() } && error.to_string().contains("finds no place"),
+        error == RigError::NoRoom { layer: "stone".into() } && error.to_string().contains("is too large for the space"),
         "{error}"
     );
 }

@@ -1,4 +1,4 @@
-//! Sleepers on small beds: what they press on the bed, how far they go, and that nothing depends on threads or pauses.
+//! Sleepers on small beds: their forces on the bed, their settlement, and results independent of threads and pauses.
 
 use super::*;
 use crate::solvers::granular::measure::Region;
@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 mod crib;
 mod glued;
 
-/// Spheres of these sizes on a plan, in a box with smooth walls or in a cell with rough ones.
+/// Spheres of these sizes on a plan, in a box with smooth walls or in a cell with rough walls.
 fn recipe(plan: [f64; 2], thickness: f64, sizes: [f64; 2], friction: f64, boxed: bool) -> Recipe {
     let surface = Surface {
         normal_stiffness: 2.6e7,
@@ -91,12 +91,12 @@ fn a_sleeper_rests_on_the_bed_and_settles_less_and_less() {
         assert!(cycle.deepest > cycle.settlement, "{cycle:?}");
         // half a sleeper on 0.2 m of stones over a rigid floor
         assert!((5e6..500e6).contains(&cycle.stiffness), "{cycle:?}");
-        // weight and push, and what its mass does to them
+        // weight and applied force, and the inertia force of the mass
         assert!((cycle.contact_force / (20e3 + 150.0 * 9.81) - 1.0).abs() < 0.15, "{cycle:?}");
         assert!(cycle.work > 0.0, "friction keeps work: {cycle:?}");
     }
     assert_eq!(trial.samples().len(), 128);
-    // the bed under it carries what presses on it: across 0.6 m and along twice its width at most
+    // the bed carries the applied force: across 0.6 m and along at most twice the width of the sleeper
     let peak = trial.readings().iter().filter(|r| r.cycle == 6).map(|r| r.stress).fold(0.0, f64::max);
     let pressure = (20e3 + 150.0 * 9.81) / (0.3 * 0.6);
     assert!((0.3..1.3).contains(&(peak / pressure)), "{peak} {pressure}");
@@ -190,7 +190,7 @@ fn a_specimen_keeps_its_pressure_dilates_and_bears_what_its_friction_bears() {
     let peak = states.iter().map(|state| state.mobilised_friction().to_degrees()).fold(0.0, f64::max);
     assert!((18.0..40.0).contains(&peak), "{peak}");
     assert!(states.iter().any(|state| state.volume_strain < -0.005), "a dense specimen dilates");
-    // what walls feel is what contacts inside carry, as long as the specimen has not outgrown the region
+    // the forces on the walls equal the forces of the contacts inside, while the specimen lies in the region
     let early: Vec<_> = states.iter().filter(|state| state.axial_strain < 0.01).collect();
     let inside: Vec<f64> =
         trial.readings().iter().filter(|r| r.phase <= early[early.len() - 1].phase).map(|r| r.stress).collect();
@@ -208,7 +208,7 @@ fn a_specimen_without_friction_has_little_strength() {
     while trial.advance().unwrap() {}
     let late: Vec<f64> = trial.specimen()[32..].iter().map(|state| state.mobilised_friction().to_degrees()).collect();
     let mean = late.iter().sum::<f64>() / late.len() as f64;
-    // 5.8 degrees at rest (Peyneau and Roux 2008); an inertial number of 1e-3 adds a few
+    // 5.8 degrees at rest (Peyneau and Roux 2008); an inertial number of 1e-3 adds a few degrees
     assert!((2.0..14.0).contains(&mean), "{mean}");
 }
 
@@ -227,7 +227,7 @@ fn a_test_that_lost_a_list_is_refused() {
         let Ok(stored) = serde_json::from_value::<StoredTrial<f32>>(lacking) else { continue };
         match Trial::restore(stored, &rig) {
             Err(_) => refused += 1,
-            // histories of contacts and rows that were read are not missed by the motion
+            // a missing contact history or recorded reading does not affect the motion
             Ok(mut trial) => drop(trial.advance()),
         }
     }

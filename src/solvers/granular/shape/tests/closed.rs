@@ -1,4 +1,4 @@
-//! Bodies and containers: the same contacts as a block, the way out of what is solid, what lies inside.
+//! Bodies and containers: the same contacts as for a block, the direction out of a solid, and points inside.
 
 use super::super::triangles::winding;
 use super::*;
@@ -76,7 +76,7 @@ fn the_nearest_contact_is_the_signed_distance() {
         if apart < 0.3 {
             worst = worst.max((out[0].distance - signed).abs()).max((back[0].distance + signed).abs());
             assert_eq!(out[0].normal, -back[0].normal);
-            // inside there is one way out
+            // inside there is one contact, towards the outside
             let (touched, other) = if within { (&back, &out) } else { (&out, &back) };
             assert_eq!(other.len(), 1);
             several += usize::from(touched.len() > 1);
@@ -97,7 +97,7 @@ fn every_contact_is_a_local_minimum_of_the_distance() {
         for touch in touches(&shape, &centre, 0.4).iter().skip(1) {
             let at = centre - touch.normal * touch.distance;
             assert!(distance(&mesh, &at) < 1e-14);
-            // nothing of the surface beside the point comes closer
+            // no point of the surface near this point is closer
             for triangle in mesh.triangles().iter().map(|t| t.map(|v| mesh.vertices()[v as usize])) {
                 if (nearest_point(&at, triangle) - at).norm() < 1e-9 {
                     assert!((nearest_point(&centre, triangle) - centre).norm() > touch.distance - 1e-12);

@@ -93,7 +93,7 @@ fn a_part_that_faces_the_wrong_way_is_found_among_others() {
 #[test]
 fn vertices_at_one_place_become_one() {
     let (v, t) = block();
-    // as a file lists them that knows no vertices: three a triangle, and one nobody needs
+    // like a file without shared vertices: three per triangle, and one unused vertex
     let mut loose: Vec<_> = t.iter().flatten().map(|corner| v[*corner as usize]).collect();
     loose.push(Vector3::new(9.0, 9.0, 9.0));
     let triangles: Vec<_> = (0..12).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();

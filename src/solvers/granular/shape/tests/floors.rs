@@ -1,4 +1,4 @@
-//! Flat faces cut into triangles: a sphere feels what it would feel on a plane, everywhere.
+//! Flat faces divided into triangles: contacts are everywhere the same as on a plane.
 
 use super::*;
 
@@ -55,7 +55,7 @@ fn a_floor_of_triangles_is_a_plane_at_every_place() {
     assert!(worst[0] == 0.0 && worst[1] < 1e-13, "{worst:?}");
 }
 
-/// Every triangle with corners of its own, moved.
+/// Every triangle with separate corners, moved.
 fn loose(mesh: &Mesh, place: impl Fn(usize, &Vector3<f64>) -> Vector3<f64>) -> Vec<Vector3<f64>> {
     let corners = |(k, t): (usize, &[u32; 3])| t.map(|v| place(k, &mesh.vertices()[v as usize]));
     mesh.triangles().iter().enumerate().flat_map(corners).collect()
@@ -66,10 +66,10 @@ fn a_floor_whose_triangles_do_not_share_vertices_is_a_plane_too() {
     let mut random = Random::new(11);
     let fine = floor(12, MeshKind::OneSided, &mut random);
     let coarse = floor(5, MeshKind::OneSided, &mut random);
-    // as a file of single precision lists it whose corners do not quite meet
+    // like a file in single precision whose corners do not meet exactly
     let skew = Vector3::new(1e-8, -1e-8, 0.0);
     let apart = loose(&fine, |k, p| (p + skew * (k % 7) as f64).map(|x| f64::from(x as f32)));
-    // two floors that divide the line between them in different ways
+    // two floors that divide their common line in different ways
     let mut side = loose(&fine, |_, p| *p);
     side.extend(loose(&coarse, |_, p| p + Vector3::x()));
     for (vertices, joint) in [(apart, 0.0), (side, 0.5)] {
@@ -185,12 +185,12 @@ fn sheets_know_their_sides_and_borders() {
     let two = Shape::Mesh(floor(4, MeshKind::TwoSided, &mut random));
     let below = Vector3::new(0.1, 0.05, -0.02);
     assert!(!one.contains(&below) && !two.contains(&below));
-    // a one-sided sheet pushes out to its front, one of two sides to where the centre is
+    // a one-sided sheet pushes towards its front, a two-sided sheet towards the side of the centre
     let [front, back] = [&one, &two].map(|shape| touches(shape, &below, 0.05));
     assert_eq!((front.len(), front[0].distance, front[0].normal), (1, -0.02, Vector3::z()));
     assert_eq!((back.len(), back[0].distance, back[0].normal), (1, 0.02, -Vector3::z()));
     assert!(touches(&one, &Vector3::new(0.1, 0.05, -0.06), 0.05).is_empty());
-    // beyond the border both are an edge, and at the end of the border a corner
+    // beyond the border both sheets are an edge, and at the end of the border a corner
     for shape in [&one, &two] {
         let edge = touches(shape, &Vector3::new(0.53, 0.1, 0.04), 0.06);
         assert_eq!(edge.len(), 1);

@@ -1,4 +1,4 @@
-//! Shear forces that go on from facet to facet.
+//! Shear forces that continue from facet to facet.
 
 use super::*;
 
@@ -18,14 +18,14 @@ fn a_feature_goes_on_and_a_new_one_takes_over_from_a_vanished_one() {
     let up = Vector3::z();
     assert_eq!(heirs(&[], &[touch(3, up)]), [None]);
     assert_eq!(heirs(&[(3, up)], &[]), []);
-    // the same feature, even if its normal turned far
+    // the same feature, even if its normal has rotated far
     assert_eq!(heirs(&[(9, up), (3, up)], &[touch(3, Vector3::x())]), [Some(1)]);
     // from facet to facet, below 30 degrees
     assert_eq!(heirs(&[(3, up)], &[touch(4, tilted(29.9))]), [Some(0)]);
     assert_eq!(heirs(&[(3, up)], &[touch(4, tilted(30.1))]), [None]);
-    // not from one that is still there
+    // not from a feature that is still touched
     assert_eq!(heirs(&[(3, up)], &[touch(3, up), touch(4, tilted(5.0))]), [Some(0), None]);
-    // the closest pair first, nothing twice
+    // the closest pair first, no history twice
     let before = [(1, up), (2, tilted(20.0))];
     assert_eq!(heirs(&before, &[touch(5, tilted(12.0)), touch(6, tilted(1.0))]), [Some(1), Some(0)]);
     assert_eq!(heirs(&before[..1], &[touch(5, tilted(12.0)), touch(6, tilted(1.0))]), [None, Some(0)]);

@@ -28,13 +28,13 @@ impl Random {
         low + (high - low) * self.next()
     }
 
-    /// In a cube round the origin.
+    /// A point in a cube around the origin.
     fn point(&mut self, half: f64) -> Vector3<f64> {
         Vector3::from_fn(|_, _| self.between(-half, half))
     }
 }
 
-/// Contacts as a neighbour search and the contact test find them together.
+/// Contacts as found by the neighbour search and the contact test together.
 fn touches(shape: &Shape, centre: &Vector3<f64>, reach: f64) -> Vec<Touch> {
     let (mut facets, mut out) = (Vec::new(), Vec::new());
     shape.near(centre, reach, &mut facets);
@@ -79,13 +79,13 @@ fn nearest_point(p: &Vector3<f64>, [a, b, c]: [Vector3<f64>; 3]) -> Vector3<f64>
     a + ab * (vb / (va + vb + vc)) + ac * (vc / (va + vb + vc))
 }
 
-/// Distance from a point to the surface by looking at every facet.
+/// Distance from a point to the surface by checking every facet.
 fn distance(mesh: &Mesh, p: &Vector3<f64>) -> f64 {
     let to = |t: &[u32; 3]| (p - nearest_point(p, t.map(|v| mesh.vertices()[v as usize]))).norm();
     mesh.triangles().iter().map(to).fold(f64::INFINITY, f64::min)
 }
 
-/// A sphere whose radius waves: hills and valleys of all turns.
+/// A sphere with a wavy radius: hills and valleys of all curvatures.
 fn bumpy() -> Mesh {
     let ball = Mesh::sphere(1.0, 3).unwrap();
     let wave = |v: &Vector3<f64>| v * (1.0 + 0.25 * (5.0 * v.x).sin() * (4.0 * v.y + 1.0).cos() * (6.0 * v.z).cos());

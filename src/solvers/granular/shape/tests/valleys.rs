@@ -1,4 +1,4 @@
-//! Folded sheets: two contacts in a valley, one on a ridge, none too many where facets hardly turn.
+//! Folded sheets: two contacts in a valley, one on a ridge, no additional contacts if facets are nearly flat.
 
 use super::*;
 
@@ -24,7 +24,7 @@ fn a_valley_is_two_contacts_and_a_ridge_is_one() {
         let ridge = fold(-angle, MeshKind::OneSided);
         let found = touches(&ridge, &Vector3::new(0.01, 0.2, 0.1), 0.11);
         assert_eq!(found.len(), 1);
-        // over the strip where it falls gently, else over the edge
+        // over the strip if it is not steep, otherwise over the edge
         let over_strip = 0.01 * angle.cos() > 0.1 * angle.sin();
         let expected = if over_strip { 0.1 * angle.cos() + 0.01 * angle.sin() } else { 0.1f64.hypot(0.01) };
         assert!((found[0].distance - expected).abs() < 1e-15);

@@ -1,8 +1,8 @@
-//! The energy account.
+//! Tests of the energy account.
 
 use super::*;
 
-/// What forces bring, pads and drag take and the track holds, under forces that move and springs that push.
+/// Work of forces, losses in pads and drag, and stored energy balance, under moving forces and pushing springs.
 #[test]
 fn energy_is_accounted_for() {
     let model = ballast(40);

@@ -1,8 +1,9 @@
-//! Steps at their limit, and what is refused.
+//! Steps at their limit, and refused steps.
 
 use super::*;
 
-/// Kinetic energy after steps of a length that no check refuses, of the start's. Just below the limit a kick makes a long beat.
+/// Kinetic energy after steps of a length that is not checked, divided by the energy at the start. Just below the limit
+/// a kick causes a long beat.
 fn growth(model: &TrackModel, time_step: f64) -> f64 {
     let mut leapfrog = leapfrog(model, &TrackLevel::as_built(model), 1e-6);
     leapfrog.force_time_step(time_step);
@@ -41,7 +42,8 @@ fn steps_are_refused_at_their_limit() {
     }
 }
 
-/// A wheel on an undamped contact of constant stiffness, over the node where the rail is lightest.
+/// A wheel on an undamped contact of constant stiffness, over the node at which the effective mass of the rail is
+/// smallest.
 #[test]
 fn wheels_set_a_limit() {
     let mut model = ballast(40);

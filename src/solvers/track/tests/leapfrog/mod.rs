@@ -1,4 +1,4 @@
-//! The leapfrog against closed forms, against passages over the same track, and against itself in other steps.
+//! The leapfrog against closed forms, against passages over the same track, and against itself with other steps.
 
 mod energy;
 mod limits;
@@ -14,7 +14,7 @@ pub const SPEED: f64 = 200.0 / 3.6;
 
 pub const FORCE: f64 = 98.1e3;
 
-/// The same track whose sleepers are carried from outside.
+/// The same track with sleepers carried by external forces.
 pub fn carried(mut model: TrackModel) -> TrackModel {
     for seat in &mut model.seats {
         if let Foot::Sleeper { mass, .. } = seat.foot {
@@ -28,13 +28,13 @@ pub fn leapfrog(model: &TrackModel, level: &TrackLevel, time_step: f64) -> Leapf
     Leapfrog::new(Arc::new(Track::new(model.clone()).unwrap()), level, time_step).unwrap()
 }
 
-/// From 0 to 1 in so many steps, smoothly.
+/// From 0 to 1 in `steps` steps, smoothly.
 pub fn gradually(step: usize, steps: usize) -> f64 {
     let t = (step as f64 / steps as f64).min(1.0);
     t * t * t * (10.0 - t * (15.0 - 6.0 * t))
 }
 
-/// What springs under the carried feet give: the law of an ordinary support, computed outside.
+/// Forces of springs under the carried feet: the law of an ordinary support, computed outside the solver.
 pub struct Springs {
     stiffness: f64,
     damping: f64,

@@ -1,4 +1,4 @@
-//! The same passage in the leapfrog and in implicit steps.
+//! The same passage with the leapfrog and with implicit steps.
 
 use super::*;
 
@@ -26,7 +26,7 @@ fn by_passage(model: &TrackModel, level: &TrackLevel, train: &Train, time_step: 
     history
 }
 
-/// The same passage, from its start, in the leapfrog; `outside`: with springs that push from outside.
+/// The same passage, from its start, with the leapfrog; `outside`: with springs that push as external forces.
 fn by_leapfrog(model: &TrackModel, level: &TrackLevel, train: &Train, time_step: f64, outside: bool) -> History {
     let stepper = stepper(model.clone(), time_step, 0.85);
     let run = Run { train, start: 10.0, finish: 16.0, motion: &Motion::Constant(SPEED) };
@@ -56,7 +56,7 @@ fn by_leapfrog(model: &TrackModel, level: &TrackLevel, train: &Train, time_step:
     history
 }
 
-/// Largest difference of seat loads and of displacements, of the largest value.
+/// Largest difference of seat loads and of displacements, divided by the largest value.
 fn difference(a: &History, b: &History) -> [f64; 2] {
     assert_eq!(a.len(), b.len());
     [0, 1].map(|k| {
@@ -65,12 +65,12 @@ fn difference(a: &History, b: &History) -> [f64; 2] {
     })
 }
 
-/// The limit of histories in steps of Δt and Δt/2 whose error falls with the square of the step.
+/// The limit of histories with steps Δt and Δt/2 and an error that falls with the square of the step.
 fn extrapolated(coarse: &History, fine: &History) -> History {
     coarse.iter().zip(fine).map(|(c, f)| [0, 1].map(|k| f[k] + (f[k] - c[k]) / 3.0)).collect()
 }
 
-/// Forces beside which no sleeper lifts off, N.
+/// Forces at which no sleeper lifts off, N.
 const LIGHT: f64 = 30e3;
 
 fn forces() -> Train {
@@ -82,8 +82,8 @@ fn shown([load, displacement]: [f64; 2]) -> String {
     format!("{load:.1e} of seat loads, {displacement:.1e} of displacements")
 }
 
-/// Errors of the leapfrog in steps of 40, 20 and 10 us against the passage of shorter steps, in seat loads and displacements;
-/// and how far both are apart when extrapolated from 20 and 10 us.
+/// Errors of the leapfrog with steps of 40, 20 and 10 us compared with the passage with shorter steps, in seat loads
+/// and displacements; and the difference between both, extrapolated from 20 and 10 us.
 fn converges(model: &TrackModel, train: &Train, outside: bool) -> ([[f64; 2]; 3], [f64; 2]) {
     let level = TrackLevel::as_built(model);
     let passages = [20e-6, 10e-6, 5e-6].map(|dt| by_passage(model, &level, train, dt));
@@ -100,8 +100,9 @@ fn converges(model: &TrackModel, train: &Train, outside: bool) -> ([[f64; 2]; 3]
     (errors, apart)
 }
 
-/// Where no sleeper lifts off: order 2 in the step, 1e-6 of the displacements at 20 us, extrapolated as the passage. Dampers
-/// of pads feel the fastest bending of the rail, which no step of 10 us follows: 1e-5 of the seat loads.
+/// If no sleeper lifts off: order 2 in the step, 1e-6 of the displacements at 20 us, extrapolated equal to the passage.
+/// Dampers of pads respond to the fastest bending of the rail, which a step of 10 us does not resolve: 1e-5 of the seat
+/// loads.
 fn assert_second_order(model: &TrackModel, train: &Train, outside: bool) {
     let (errors, apart) = converges(model, train, outside);
     let order = (errors[1][1] / errors[2][1]).log2();
@@ -110,7 +111,7 @@ fn assert_second_order(model: &TrackModel, train: &Train, outside: bool) {
     assert!(apart[0] < 1e-6 && apart[1] < 1e-8);
 }
 
-/// So light that no sleeper lifts off beside its bogies.
+/// A train so light that no sleeper lifts off beside its bogies.
 fn light() -> Train {
     Train::single(Vehicle { car_body_mass: 9_000.0, ..wagon() }, Direction::Forward)
 }
@@ -140,7 +141,7 @@ fn explicit_supports_under_a_light_wagon_on_waves() {
     assert_second_order(&wavy(), &light(), false);
 }
 
-/// Beside a loaded wagon sleepers lift off a little and come down again, where the damper's force jumps at the next step:
+/// Beside a loaded wagon sleepers lift off a little and come down again; then the damper force jumps at the next step:
 /// order 1, 5e-5 at 20 us, and the same in both methods.
 #[test]
 fn a_loaded_wagon() {
@@ -152,7 +153,7 @@ fn a_loaded_wagon() {
     }
 }
 
-/// A sleeper that strikes its support again and again under a wagon: the jump of the damper at contact leaves order 1.
+/// A sleeper that hits its support repeatedly under a wagon: the jump of the damper force at contact gives order 1.
 #[test]
 fn a_void_converges() {
     let model = ballast(40);

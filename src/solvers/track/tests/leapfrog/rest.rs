@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// Twenty fixed sleepers under 100 kN over one of them: the moment is 17.66 kN m, where published figures are 16 and 19.
+/// Twenty fixed sleepers under 100 kN over one of them: the moment is 17.66 kN m, where published figures are 16 and
+/// 19.
 #[test]
 fn fixed_sleepers() {
     let mut model = ballast(20);
@@ -35,7 +36,7 @@ fn fixed_sleepers() {
     assert_eq!(moments[node], moment);
 }
 
-/// Pads under sleepers and the ground under them yield in series.
+/// Pads under sleepers and the ground below them act in series.
 #[test]
 fn pads_under_sleepers() {
     let (stiff, model) = (150e6, ballast(20));
@@ -66,7 +67,7 @@ fn pads_under_sleepers() {
     let rest = solve_static(&track, &level, &Loads { rail: &[(x, 1e5)], ..Loads::default() }).unwrap();
     let view = leapfrog.view();
     for seat in 0..20 {
-        // The weight of the underside does not press the pad.
+        // The weight of the underside does not load the pad.
         let difference = view.foot_displacement(seat) - rest.foot_displacements[seat];
         let underside = view.foot_displacement(seat) - view.underside_displacement(seat);
         let force = view.contact_force(seat).unwrap();
@@ -76,7 +77,7 @@ fn pads_under_sleepers() {
     }
 }
 
-/// Supports that settle take the sleepers along; at rest again the track is where statics put it.
+/// Settling supports move the sleepers down; at rest again the track is in the position of the statics.
 #[test]
 fn levels_change_while_it_runs() {
     let mut model = transition(20, 20);
@@ -107,7 +108,7 @@ fn levels_change_while_it_runs() {
     assert!(largest < 1.0 && rest.contact_forces.iter().any(|force| *force > 3e3));
 }
 
-/// Held at their levels, carried feet bear the track.
+/// Carried feet held at their levels carry the track.
 #[test]
 fn carried_feet_at_rest() {
     let model = carried(ballast(20));

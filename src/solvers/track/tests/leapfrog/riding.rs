@@ -1,8 +1,8 @@
-//! Trains that come, pass and leave.
+//! Trains that arrive, pass and leave.
 
 use super::*;
 
-/// Three wagons come from outside, pass and leave: every wheel begins and ends with its static force.
+/// Three wagons arrive from outside, pass and leave: every wheel begins and ends with its static force.
 #[test]
 fn a_train_enters_and_leaves() {
     for direction in [Direction::Forward, Direction::Backward] {
@@ -35,7 +35,7 @@ fn a_train_enters_and_leaves() {
         let view = leapfrog.view();
         println!("wheel forces {least:.4} .. {most:.4}, inside {:.4} .. {:.4}", inside.0, inside.1);
         println!("peaks {:.1} .. {:.1} kN", peaks[20] / 1e3, peaks[30] / 1e3);
-        // The clamped end of the rail is a stiff place that a wheel meets at once.
+        // The clamped end of the rail is stiff, and a wheel meets it at once.
         assert!(least > 0.75 && most < 1.25 && inside.0 > 0.95 && inside.1 < 1.05);
         assert!((peaks[20] / peaks[40] - 1.0).abs() < 0.02 && peaks[30] > 0.3 * still);
         assert!(view.on_rail().is_empty());
@@ -48,7 +48,7 @@ fn a_train_enters_and_leaves() {
     }
 }
 
-/// A ride that is stopped, written down and read back goes on to the same bits.
+/// A ride that is stopped, saved and restored continues bit by bit the same.
 #[test]
 fn a_checkpoint_gives_the_same_bits() {
     let model = ballast(30);
@@ -79,7 +79,7 @@ fn a_checkpoint_gives_the_same_bits() {
     assert!(other.restore(whole.state()).is_err(), "the state of a ride in a track without one");
 }
 
-/// Beyond absorbing ends the track goes on: a wagon comes to it and leaves it without a blow, whatever the level there.
+/// Beyond absorbing ends the track goes on: a wagon enters and leaves without a jump of its forces, at any level.
 #[test]
 fn a_wagon_comes_along_the_track_that_goes_on() {
     let mut model = ballast(60);
@@ -110,7 +110,8 @@ fn a_wagon_comes_along_the_track_that_goes_on() {
     }
 }
 
-/// The forces of a ride, given as histories, move the track to the same bits: what rides and what is iterated are one model.
+/// The forces of a ride, applied as histories, move the track bit by bit the same: the ride and the iteration use the
+/// same model.
 #[test]
 fn histories_of_a_ride_repeat_it() {
     let mut model = ballast(30);
@@ -132,7 +133,7 @@ fn histories_of_a_ride_repeat_it() {
     assert!((0..30).all(|foot| ridden.underside(foot) == given.underside(foot)));
 }
 
-/// A dip of the running surface throws the wheels off the rail; they come back, and are never pulled.
+/// A dip of the running surface makes the wheels lift off the rail; they land again, and no wheel force is negative.
 #[test]
 fn wheels_lift_off() {
     let mut model = ballast(40);

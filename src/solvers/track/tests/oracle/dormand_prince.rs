@@ -1,9 +1,10 @@
 //! Dormand and Prince's pair of order 5(4) with error control and located contacts: a change of a support is a root of
-//! `min(g, R)`, found to 1e-13 s, and the integration starts anew there.
+//! `min(g, R)`, found to 1e-13 s, and the integration restarts there.
 
 use super::Oracle;
 
-/// Dormand and Prince's tableau: what each stage takes of the earlier ones, and the difference to the embedded fourth order.
+/// Dormand and Prince's tableau: weights of the earlier stages in each stage, and the difference to the embedded fourth
+/// order.
 const STAGES: [&[f64]; 6] = [
     &[1.0 / 5.0],
     &[3.0 / 40.0, 9.0 / 40.0],
@@ -28,7 +29,7 @@ pub struct Integrator {
     fresh: bool,
     pub events: usize,
     pub steps: usize,
-    /// Time in which each support carried nothing, s.
+    /// Time in which each support carried no force, s.
     pub hanging: Vec<f64>,
 }
 
@@ -50,7 +51,7 @@ impl Integrator {
         }
     }
 
-    /// Tries a step; leaves its end in `stage` and returns its error in units of the tolerance.
+    /// Tries a step; stores its end in `stage` and returns its error in units of the tolerance.
     fn attempt(&mut self, h: f64) -> f64 {
         if !self.fresh {
             self.oracle.rate(self.time, &self.y, &mut self.slopes[0]);
@@ -69,7 +70,7 @@ impl Integrator {
         let mut worst = 0.0f64;
         for i in 0..self.y.len() {
             let error: f64 = ERROR.iter().zip(&self.slopes).map(|(part, slope)| part * slope[i]).sum();
-            // A millimetre and a tenth of a metre per second are the sizes of this motion.
+            // Typical sizes of this motion are a millimetre and a tenth of a metre per second.
             let size = if i < half { 1e-3 } else { 0.1 };
             worst = worst.max((h * error).abs() / (self.tolerance * size));
         }

@@ -1,8 +1,8 @@
-//! An independent solution of a passage: own elements by quadrature, own bodies, no matrix of the solver.
+//! An independent solution of a passage: separate elements by quadrature, separate bodies, no matrix of the solver.
 //!
-//! A support carries `R = k g + c g'` while its gap g and R are above 0 and nothing otherwise. Between two changes its law is
-//! linear, so an integrator keeps its order. A wheel's indentation d solves `d + L C_H d^1.5 = approach` with the local
-//! deflection L of its element.
+//! A support carries `R = k g + c g'` while its gap g and R are above 0, otherwise 0. Between two changes its law is
+//! linear, so an integrator keeps its order. The indentation d of a wheel solves `d + L C_H d^1.5 = approach` with the
+//! local compliance L of its element.
 
 mod elements;
 mod wagon;
@@ -21,8 +21,8 @@ struct Support {
     settlement: f64,
 }
 
-/// Track, wagon and how both move. The state is rail (deflection and slope of every node), sleepers, wagon (car body bounce
-/// and pitch, the same of both bogies, four wheels), then the velocities of all of these.
+/// Track and wagon, and their state. The state is rail (deflection and slope of every node), sleepers, wagon (car body
+/// bounce and pitch, the same for both bogies, four wheels), then the velocities of all of these.
 pub struct Oracle {
     h: f64,
     rail_mass: f64,
@@ -41,8 +41,8 @@ pub struct Oracle {
 }
 
 impl Oracle {
-    /// The same track and run that the passage has, with an even number of elements a bay; the rail's four end unknowns are
-    /// held.
+    /// The same track and run as the passage, with an even number of elements per bay; the four end unknowns of the
+    /// rail are held.
     pub fn new(model: &TrackModel, level: &TrackLevel, wagon: Vehicle, first_wheel: f64, speed: f64) -> Self {
         let h = 0.6 / model.elements_per_bay as f64;
         let elements = ((model.ends[1] - model.ends[0]) / h).round() as usize;
@@ -187,7 +187,7 @@ impl Oracle {
         wagon::accelerations(&self.wagon, self.gravity, &u[at..], &v[at..], wheel_forces, &mut force[at..]);
     }
 
-    /// Starts the supports as the state says.
+    /// Sets the phases of the supports from the state.
     pub fn settle_phases(&mut self, y: &[f64]) {
         for s in 0..self.supports.len() {
             let (gap, force) = self.support_line(s, y);

@@ -2,7 +2,7 @@
 
 use crate::solvers::track::Vehicle;
 
-/// Newton's law of every body, written out.
+/// The equation of motion of every body, written out.
 pub fn accelerations(wagon: &Vehicle, gravity: f64, z: &[f64], v: &[f64], wheel_forces: [f64; 4], a: &mut [f64]) {
     let (half_base, half_axles) = (0.5 * wagon.bogie_spacing, 0.5 * wagon.wheelset_spacing);
     let (mut body_force, mut body_moment) = (0.0, 0.0);
