@@ -85,7 +85,7 @@ fn sides_against_the_ground_are_told_with_the_line_to_write() {
         ),
         (
             "sections = [open: 42 m, deck: 24 m], transitions = [gare: stiff_to_soft]",
-            "transition `gare` is declared `stiff_to_soft`, but what lies under the pads is stiffer behind it",
+            "transition `gare` is declared `stiff_to_soft`, but the support under the pads is stiffer behind it",
             "transitions = [gare: soft_to_stiff]",
         ),
         (
