@@ -78,7 +78,8 @@ impl<'p> Builder<'p> {
         Explained::Other(path)
     }
 
-    /// A mistake with the way out; one that is an edit takes the place of the first line of the part that begins at `start`.
+    /// A mistake with the way out; one that is an edit takes the place of the first line of the part that begins at
+    /// `start`.
     fn shown(&self, mistake: Diagnostic, way: Option<Way>, start: usize, end: usize) -> Diagnostic {
         match way {
             Some(Way::Say(help)) => mistake.help(help),
@@ -129,7 +130,7 @@ impl<'p> Builder<'p> {
             return say(&format!("a line goes on behind an operator: end the line above with `{word}`"));
         }
         if word == "." {
-            return say("the factors of a unit are parted by a blank: `kN s/m`");
+            return say("separate the factors of a unit by a blank: `kN s/m`");
         }
         let mut before = text[start..found.map_or(end, |t| t.start)].split_whitespace().rev();
         if let (Some(half), Some("per")) = (before.next(), before.next()) {

@@ -103,7 +103,7 @@ impl Builder<'_> {
                     "from one value to another in steps: `steps({from} .. {to}, by = {step})`, each with its unit"
                 ))
             }
-            ":" if exact == Rule::exact_entry && before.contains(':') => Some("pairs are parted by commas".to_owned()),
+            ":" if exact == Rule::exact_entry && before.contains(':') => Some("separate pairs by commas".to_owned()),
             ":" if value && !before.is_empty() => {
                 let line = self.items_of_line(start);
                 Some(match before.trim_start_matches(['-', '+']).chars().all(|c| c.is_ascii_digit()) {
@@ -117,7 +117,7 @@ impl Builder<'_> {
                 Some(format!("a length in feet? {feet} ft are {metres} m (1 ft = 0.3048 m)"))
             }
             "'" if before.ends_with(digit) => Some(format!("digits are grouped by `_`: `{before}_{}`", &rest[1..])),
-            "·" | "x" if before.ends_with(digit) => Some("powers of ten stand in the number: `4e7 N/m`".to_owned()),
+            "·" | "x" if before.ends_with(digit) => Some("write powers of ten in the number: `4e7 N/m`".to_owned()),
             _ if exact == Rule::exact_field => habit_of_field(part),
             _ if !value => None,
             _ if before.starts_with('"') && before.ends_with('"') && before[1..].starts_with(digit) => {
@@ -128,7 +128,7 @@ impl Builder<'_> {
                 Some(format!("a unit stands behind its number: write `{inner} {rest}`"))
             }
             _ if found.kind == Kind::Number && before.ends_with(" x") => {
-                Some("powers of ten stand in the number: `4e7 N/m`".to_owned())
+                Some("write powers of ten in the number: `4e7 N/m`".to_owned())
             }
             _ if found.kind == Kind::Number
                 && before.chars().all(|c| c.is_ascii_digit() || c == '_')
@@ -193,7 +193,7 @@ fn unit_or_remark(word: &str, before: &str, rest: &str, after: &str) -> Option<S
             Some(format!("write `{before}/{}`", rest.trim_start_matches('\\')))
         }
         "." if number && before.ends_with(char::is_alphabetic) && after.starts_with(char::is_alphabetic) => Some(
-            format!("the factors of a unit are parted by a blank: write `{before} {}`", rest.trim_start_matches('.')),
+            format!("separate the factors of a unit by a blank: write `{before} {}`", rest.trim_start_matches('.')),
         ),
         "(" if number && after.starts_with("per ") => {
             Some(format!("write `{before} {}`", rest.trim_start_matches('(').trim_end_matches(')')))

@@ -1,4 +1,4 @@
-//! Makes an object complete: defaults where nothing is given, and a diagnostic for everything that must be.
+//! Completes an object: adds defaults for fields that are not given, and reports required fields that are missing.
 
 use super::evaluator::Evaluator;
 use super::value::{Record, Slot, Val};
@@ -8,7 +8,7 @@ use crate::syntax::tree::{Item, Value};
 use std::rc::Rc;
 
 impl Evaluator<'_> {
-    /// The record with every default in place, itself and everything inside it.
+    /// The record with every default, also in the objects inside it.
     pub fn complete(&mut self, record: &Record) -> Record {
         let mut full = record.clone();
         for field in record.kind.fields {
@@ -92,13 +92,13 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Refuses two ways that say different things.
+    /// Refuses two ways of giving the same quantity.
     fn one_way(&mut self, record: &Record, alternative: &'static Alternative) {
         let fields = alternative.ways.iter().flat_map(|way| way.iter());
         let given: Vec<(&str, Span)> = fields.filter_map(|path| Some((*path, record.slot(path)?.span))).collect();
         if let [(first, one), (second, other), ..] = given[..] {
             self.findings.report(
-                Diagnostic::new(Code::E0404, format!("`{first}` and `{second}` say two things where one can hold"))
+                Diagnostic::new(Code::E0404, format!("`{first}` and `{second}` give the same quantity in two ways"))
                     .label(other, "")
                     .label(one, "")
                     .help("keep one of the two"),
@@ -114,7 +114,7 @@ impl Evaluator<'_> {
         };
         let mistake = Diagnostic::new(Code::E0403, format!("{who} needs {what}"))
             .label(record.span, "not given")
-            .help(format!("`trackbed docs {}` says what it means", record.kind.name))
+            .help(format!("`trackbed docs {}` explains the field", record.kind.name))
             .maybe_fix(self.hole(record, what));
         record.lacks(what, mistake, &mut self.findings);
     }
@@ -172,7 +172,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// Whether something on the way to a path could not be understood, so that nobody knows what stands there.
+/// Whether a part of a path could not be understood, so that its value is unknown.
 fn hidden_by_error(record: &Record, path: &str) -> bool {
     record.unknown(path)
         || path.split_once('.').is_some_and(|(first, _)| record.get(first).is_none() || record.unknown(first))

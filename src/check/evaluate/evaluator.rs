@@ -1,4 +1,4 @@
-//! The state of evaluation: the scopes, what has been evaluated of them, and how deep it is being followed.
+//! The state of evaluation: the scopes, the values evaluated so far, and the current depth.
 
 use super::number::Raw;
 use super::value::Record;
@@ -44,13 +44,13 @@ pub struct Evaluator<'m> {
     pub(super) without_library: BTreeSet<ScopeId>,
     /// The field whose value is being read.
     pub(super) asked: Option<(&'static Kind, &'static str)>,
-    /// Values of another form: what was said of foreign signs in them is not worth following.
+    /// Values of a wrong form; reports on foreign signs inside them are dropped.
     pub(super) superseded: Vec<Span>,
 }
 
-/// Values that lead to values: deeper than people write, shallow enough for any stack.
+/// Largest depth of values inside values: deeper than people write, but safe for any stack.
 const DEEPEST: usize = 1_200;
-/// What following a name costs of that.
+/// Depth that is counted for following a name.
 const NAME: usize = 20;
 
 impl<'m> Evaluator<'m> {
@@ -80,7 +80,7 @@ impl<'m> Evaluator<'m> {
         }
     }
 
-    /// Drops what was said of foreign signs in values that are of another form as a whole.
+    /// Drops reports on foreign signs in values that have a wrong form as a whole.
     pub fn drop_superseded(&mut self) {
         let within = |d: &Diagnostic, outer: &Span| {
             d.labels
@@ -91,12 +91,12 @@ impl<'m> Evaluator<'m> {
         self.findings.diagnostics.retain(|d| d.code != Code::E0105 || !superseded.iter().any(|span| within(d, span)));
     }
 
-    /// Goes a step further down, unless that is too deep for the machine.
+    /// Goes one level deeper, unless this is too deep for the machine.
     pub fn deeper<T>(&mut self, steps: usize, span: Span, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         if self.depth + steps > DEEPEST {
             self.findings.report(
-                Diagnostic::new(Code::E0103, "values lead to values that lead to values, too far to follow")
-                    .label(span, "given up here")
+                Diagnostic::new(Code::E0103, "values refer to other values in a chain that is too long")
+                    .label(span, "the chain is too long here")
                     .help("write the value itself"),
             );
             return None;
@@ -120,12 +120,14 @@ impl<'m> Evaluator<'m> {
             }
             let names: Vec<String> =
                 self.stack[start..].iter().map(|(item, _)| *item).chain([id]).map(|i| self.item_name(i)).collect();
-            let mut mistake =
-                Diagnostic::new(Code::E0203, format!("{} need each other", quoted_list(&names[..names.len() - 1])))
-                    .label(place, "closes the circle")
-                    .help(format!("the circle is {}", names.join(" -> ")));
+            let mut mistake = Diagnostic::new(
+                Code::E0203,
+                format!("{} depend on each other", quoted_list(&names[..names.len() - 1])),
+            )
+            .label(place, "closes the circle")
+            .help(format!("the circle is {}", names.join(" -> ")));
             if names.len() == 2 {
-                mistake.message = format!("`{}` needs itself", names[0]);
+                mistake.message = format!("`{}` depends on itself", names[0]);
             }
             self.findings.report(mistake);
             return None;

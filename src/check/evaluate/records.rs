@@ -57,7 +57,7 @@ impl Evaluator<'_> {
         if foreign.any(|d| d.labels.first().is_some_and(|label| on_line(label.span))) {
             return None;
         }
-        // what is misspelt is read on as what was probably meant
+        // a misspelt kind is read as the kind that was probably meant
         let near = schema::meant_kind(&name.text);
         let help = near.map_or_else(|| Help::say("`trackbed docs` lists the kinds"), |k| Help::meant(k.name));
         self.findings.report(
@@ -68,7 +68,7 @@ impl Evaluator<'_> {
         near
     }
 
-    /// What `: base` or an object's path names, of the same kind.
+    /// The object of the same kind that `: base` or an object's path names.
     fn base(&mut self, path: &Path, kind: &'static Kind, scope: ScopeId) -> Option<Rc<Record>> {
         let target = self.resolve(path, scope, &[])?;
         let found = if target.is_let { None } else { Some(self.slot_at(&target, path)?) };
@@ -96,7 +96,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// An object before its own fields: empty, or with those of what it extends.
+    /// An object before its own fields: empty, or with the fields of its base.
     fn extended(&mut self, base: Option<&Path>, kind: &'static Kind, name: &str, span: Span, scope: ScopeId) -> Record {
         let empty = Record::empty(kind, name, span);
         let Some(path) = base else { return empty };
@@ -169,7 +169,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Giving one way to say a thing drops the inherited other ways.
+    /// A field drops inherited fields that give the same quantity in another way.
     fn drop_rivals(&self, record: &mut Record, fields: &[Field]) {
         let sets = |path: &str| fields.iter().any(|f| !is_none(f) && sets_path(f, path));
         for alternative in record.kind.alternatives {
@@ -187,7 +187,7 @@ impl Evaluator<'_> {
 
     /// A field that is not known may stand for one that is: that one is not reported as missing too.
     fn excuse(&self, record: &mut Record, name: &Name, field: &Field) {
-        // nobody knows what else a stretch would have said
+        // the other fields of a stretch are unknown
         record.partial |= record.kind.plans(&name.text) || record.kind.changes().is_some();
         if record.kind.plans(&name.text) {
             return;
@@ -200,7 +200,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Follows a path into a record and replaces what is there.
+    /// Follows a path into a record and replaces the value there.
     fn put(&mut self, record: &mut Record, path: &[Name], field: &Field, scope: ScopeId) {
         let name = &path[0];
         // a line that could not be read may not begin with a name of a field at all
@@ -269,18 +269,18 @@ impl Evaluator<'_> {
                 }
             }
             Some(Val::Error | Val::Hole) => return,
-            // what it is of is not known here
+            // its basis is not known here
             _ if record.partial || record.kind.changes().is_some() => return,
             _ => {}
         }
         self.findings.report(
             Diagnostic::new(Code::E0402, format!("there is no `{}` inside `{}` to replace", name.text, known.name))
                 .label(name.span, "not found")
-                .help(format!("give the whole of it: `{} = ...`", known.name)),
+                .help(format!("give the whole value: `{} = ...`", known.name)),
         );
     }
 
-    /// The field of that name; a diagnostic where the kind has none.
+    /// The field of that name; a diagnostic if the kind has none.
     pub fn field_of(&mut self, kind: &'static Kind, name: &Name) -> Option<&'static schema::Field> {
         if let Some(field) = kind.field(&name.text) {
             return Some(field);
@@ -332,7 +332,7 @@ pub fn object_kind(form: &Form) -> Option<&'static Kind> {
     }
 }
 
-/// Whether a field says that there is nothing, which takes the place of nothing else.
+/// Whether a field is `none`; such a field drops no other field.
 fn is_none(field: &Field) -> bool {
     matches!(&field.value.kind, ValueKind::Path(path) if path.names.len() == 1 && path.names[0].text == "none")
 }
