@@ -233,7 +233,7 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("after      = [0, 100, 500] axles", "after      = 0, 100, 500 axles", Code::E0101, "write `after = [0, 100, 500] axles`"),
     ("after      = [0, 100, 500] axles", "after      = [0, 100, 500] axels", Code::E0303, "did you mean `axles`?"),
     ("after      = [0, 100, 500] axles", "after      = [0, 100, 500] wheelsets", Code::E0303, "did you mean `axles`?"),
-    ("after      = [0, 100, 500] axles", "after      = [0, 100, 500] cycles", Code::E0302, "counts are given in `axles` or as the mass carried, `MGT`, where trains run; in `cycles` where a load comes back"),
+    ("after      = [0, 100, 500] axles", "after      = [0, 100, 500] cycles", Code::E0302, "counts are in `axles` or as the mass carried, `MGT`, if trains run; in `cycles` if a load is cyclic"),
     ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) =< 80 kN per seat", Code::E0105, "write `max(contact_force) <= 80 kN per seat`"),
     ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) ≤ 80 kN per seat", Code::E0105, "write `max(contact_force) <= 80 kN per seat`"),
     ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) <80kN per seat and max(contact_force) > 10 kN per seat", Code::E0101, "each comparison stands alone, on its line or behind a comma; `a < x < b` is one too"),
