@@ -124,7 +124,7 @@ fn no_advice_lengthens_a_bridge() {
     let longer = told(&short_bridge(24.0, 36.0), "");
     assert_eq!(longer, [], "the advice helps");
     let scene = with(&short_bridge(36.0, 36.0), "bridge: 4.8 m", "bridge: 5 m");
-    one(&scene, "", Code::E0502, "where the length is given, write `spacing = 5 m / 8`");
+    one(&scene, "", Code::E0502, "if the length is fixed, write `spacing = 5 m / 8`");
     let spaced = with(&scene, "45 MN/m per seat }", "45 MN/m per seat }, spacing = 5 m / 8");
     assert_eq!(told(&spaced, ""), []);
 }

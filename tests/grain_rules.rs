@@ -219,7 +219,7 @@ fn a_volume_is_three_median_grains() {
         Scene { rest: &rest, ..SCENE }.says(Code::L1024)
     };
     assert!(with("sphere(60 mm)").is_empty() && with("box(0.12 m, bed, 0.2 m)").is_empty());
-    let said = ["a volume of 100 mm holds 2.5 median grains of `stone`, d50 = 40 mm"];
+    let said = ["a volume of 100 mm is only 2.5 median grains of `stone` wide, d50 = 40 mm"];
     assert_eq!(with("sphere(50 mm)"), said);
     assert_eq!(with("box(0.2 m, 0.1 m, 0.3 m)"), said);
     // in the soil below there are no grains to count
@@ -264,7 +264,7 @@ fn rules_hold_for_test_rigs() {
     assert_eq!(told(&box_test("scale = 1", "budget = 1000 h")), []);
     let compiled = box_test("scale = 1", "budget = 1 s");
     let [(Code::L1022, message)] = told(&compiled)[..] else { panic!("{:?}", compiled.diagnostics) };
-    assert!(message.starts_with("the test is expected to take") && message.contains("its budget is 1 s:"), "{message}");
+    assert!(message.starts_with("the test is expected to take") && message.contains("its budget of 1 s:"), "{message}");
     // soft contacts under the plate that packs them
     let soft = box_test("contact_stiffness = 0.5 MN/m per contact", "");
     assert!(told(&soft).iter().any(|(code, _)| *code == Code::L1021), "{:?}", soft.diagnostics);

@@ -563,7 +563,7 @@ fn random_values_beyond_their_range_are_counted() {
         mistake.message
     );
     assert!(
-        mistake.message.ends_with("of the settlement of trackform `open` leave -100 .. 100 mm"),
+        mistake.message.ends_with("of the settlement of trackform `open` are outside -100 .. 100 mm"),
         "{}",
         mistake.message
     );

@@ -218,7 +218,7 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("use std", "use std::pads", Code::E0101, "names are joined by dots: `pads.medium`"),
     ("use std", "using std", Code::E0101, "write `use std`"),
     ("use std", "include std", Code::E0101, "write `use std`"),
-    ("use std", "use std as s", Code::E0204, "write `use std`, and `rails.UIC60` for what is in its module `rails`"),
+    ("use std", "use std as s", Code::E0204, "write `use std`, and for example `rails.UIC60` for an entry of its module `rails`"),
     ("at         = [-20, -5, -1, +1] sleepers", "at         = -20, -5 sleepers", Code::E0101, "write `at = [-20, -5] sleepers`"),
     ("at         = [-20, -5, -1, +1] sleepers", "at         = -20, -5, -1, +1 sleepers", Code::E0101, "write `at = [-20, -5, -1, +1] sleepers`"),
     ("at         = [-20, -5, -1, +1] sleepers", "at         = -20 -5 -1 +1 sleepers", Code::E0305, "write several values in brackets, separated by commas"),
