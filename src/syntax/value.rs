@@ -1,4 +1,4 @@
-//! The part of the tree's making that deals with values: precedence is the grammar's, spans and bounds are ours.
+//! Builds the values of the tree: the grammar gives precedence, this module gives spans and bounds.
 
 use pest::iterators::Pair;
 
@@ -8,18 +8,18 @@ use super::limits;
 use super::tree::{Argument, BinaryOp, Comparison, Entry, UnitText, Value, ValueKind};
 use crate::diag::{Code, Diagnostic, Fix, Span};
 
-/// What has been said of a list or of arguments.
+/// Reports already made on a list or on arguments.
 #[derive(Default)]
 pub(super) struct Told {
-    /// `=` where `:` belongs.
+    /// `=` instead of `:`.
     pub equals: bool,
-    /// `:` where `=` belongs, or no sign where `:` does.
+    /// `:` instead of `=`, or a missing `:`.
     pub colon: bool,
 }
 
 impl<'p> Builder<'p> {
     pub fn value(&mut self, pair: Pair<'p, Rule>) -> Value {
-        // Most values use one level of precedence of seven.
+        // Most values use only one of the seven levels of precedence.
         let mut pair = pair;
         while let Rule::value | Rule::range | Rule::sum | Rule::product | Rule::factor | Rule::power = pair.as_rule() {
             let mut parts = pair.clone().into_inner();
@@ -149,7 +149,7 @@ impl<'p> Builder<'p> {
         left.unwrap_or(Value { kind: ValueKind::Error, span })
     }
 
-    /// A sign in front: `-` makes a negation, `+` says nothing but belongs to the place.
+    /// A sign in front: `-` makes a negation, `+` has no effect but belongs to the place.
     fn signed(&mut self, pair: Pair<'p, Rule>) -> Value {
         let start = self.span(pair.as_span().start(), pair.as_span().start());
         let mut negative = false;
@@ -219,7 +219,7 @@ impl<'p> Builder<'p> {
         }
         let value: f64 = digits.parse().unwrap_or(f64::NAN);
         if !value.is_finite() {
-            let mistake = Diagnostic::new(Code::E0103, "number too large to be held");
+            let mistake = Diagnostic::new(Code::E0103, "number too large");
             self.report(mistake.label(span, "the largest is about 1.8e308"));
             return Value { kind: ValueKind::Error, span };
         }
@@ -280,7 +280,7 @@ impl<'p> Builder<'p> {
         let start = pair.as_span().start();
         let mut span = self.span(start, start);
         let (mut entries, mut unit) = (Vec::<Entry>::new(), None);
-        // a habit shows all along a list, and is told once
+        // a habit repeats along a list and is reported once
         let mut told = Told::default();
         let in_groups = self.pairs_in_groups(&pair);
         for part in pair.into_inner() {
@@ -436,8 +436,8 @@ impl<'p> Builder<'p> {
         };
         let mistake = Diagnostic::new(Code::E0101, format!("expected one value in parentheses, found {found}"));
         let help = match entries.len() {
-            0 => "write a value between them, or take them out",
-            _ => "lists stand in `[ ]`",
+            0 => "write a value between them, or remove them",
+            _ => "put lists in `[ ]`",
         };
         self.report(mistake.label(span, "").help(help));
         Value { kind: ValueKind::Error, span }

@@ -198,7 +198,7 @@ fn special(measure: &Measure, raw: &Raw, per: &str) -> Option<Help> {
         return Some(Help::say("a share is given in `%`: the length divided by the whole"));
     }
     if expected == Dimension::TIME && [Dimension::AXLES, Dimension::CYCLES].contains(&found) {
-        let why = "an interval of samples is a time; counts of traffic stand in a list: `after = [100, 200] axles`";
+        let why = "an interval of samples is a time; counts of traffic are a list: `after = [100, 200] axles`";
         return Some(Help::say(why));
     }
     if expected == Dimension::AXLES && found == Dimension::TIME {
