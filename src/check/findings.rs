@@ -7,7 +7,7 @@ use std::collections::HashSet;
 #[derive(Default)]
 pub struct Findings {
     pub diagnostics: Vec<Diagnostic>,
-    /// What has been reported, by code, message and place.
+    /// Reported diagnostics, by code, message and place.
     reported: HashSet<(Code, String, Option<Span>)>,
     missing: Vec<Gap>,
 }
@@ -15,7 +15,7 @@ pub struct Findings {
 /// A missing part of an object.
 struct Gap {
     object: Span,
-    /// Where the objects stand that it extends.
+    /// Places of the objects that it extends.
     bases: Vec<Span>,
     what: String,
     diagnostic: Diagnostic,

@@ -51,7 +51,7 @@ fn structure<'a>(scenario: &'a Scenario, graph: &Graph) -> Option<(&'a str, &'a 
     })
 }
 
-/// Median stiffness at rail level of the seats of a section, N/m: it says which sleepers carry more.
+/// Median stiffness at rail level of the seats of a section, N/m: sleepers of the stiffer section carry more.
 fn of_section(scenario: &Scenario, graph: &Graph, section: usize) -> Option<f64> {
     let track = &scenario.track;
     let at_seat = |seat| Some(Winkler::at_seat(track, &graph.supports, seat)?.rail_stiffness());

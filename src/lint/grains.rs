@@ -24,7 +24,7 @@ pub(super) struct GrainLayer<'a> {
     pub top: bool,
 }
 
-/// The granular layers of a scene whose plan has grains; none where a settlement law answers.
+/// The granular layers of a scene whose plan has grains; none if a settlement law is used.
 pub(super) fn beds<'a>(scenario: &'a Scenario, graph: &Graph) -> Vec<GrainLayer<'a>> {
     if !graph.nodes.iter().any(|node| matches!(node.model, Model::Bed(_) | Model::Grains(_) | Model::Cells(_))) {
         return Vec::new();

@@ -108,7 +108,7 @@ struct Led<'a> {
     blocks: &'a Blocks,
 }
 
-/// The traffic of a scene and its plan; `None` where no train runs.
+/// The traffic of a scene and its plan; `None` if no train runs.
 fn led<'a>(scenario: &'a Scenario, graph: &'a Graph) -> Option<Led<'a>> {
     let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
     Some(Led { train: &traffic.train, blocks: graph.blocks()? })

@@ -9,7 +9,7 @@ const BAYS: usize = 81;
 /// Wheel load if the scene has none, N.
 const USUAL_LOAD: f64 = 100e3;
 
-/// The force that stands on the rail, N: the heaviest mean wheel load of a train, else the largest test load on the
+/// The force on the rail, N: the heaviest mean wheel load of a train, else the largest test load on the
 /// rail.
 pub(super) fn load(graph: &Graph) -> f64 {
     let gravity = graph.track().map_or(0.0, |track| track.gravity);

@@ -19,7 +19,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         return Vec::new();
     }
     let track = &scenario.track;
-    // the stiffness of a seat, and where the scene states it
+    // the stiffness of a seat, and the place at which the scene states it
     let stiffness = |index: usize| {
         let support = graph.supports.get(index)?.support?;
         Some((

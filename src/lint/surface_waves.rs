@@ -62,7 +62,7 @@ fn surface_wave(layer: &Layer, x: f64) -> Option<f64> {
     Some(shear_wave * of_shear_wave(poisson))
 }
 
-/// The speed of surface waves over that of shear waves.
+/// The ratio of the speed of surface waves to the speed of shear waves.
 fn of_shear_wave(poisson: f64) -> f64 {
     (0.862 + 1.14 * poisson) / (1.0 + poisson)
 }

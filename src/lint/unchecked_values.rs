@@ -1,4 +1,4 @@
-//! L1010: the scene takes values from the library that nobody has checked against their source. Silent until a scene
+//! L1010: the scene takes values from the library that have not been checked against their source. Silent until a scene
 //! asks for it.
 
 use crate::diag::{Code, Diagnostic};

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// The place of a point's diagnostic in the scene of the study.
 pub(super) type Place = Vec<Label>;
 
-/// Finds places of a point's sources in those of the scene.
+/// Finds places of a point's sources in the sources of the scene.
 pub(super) struct Places<'a> {
     pub base: &'a Sources,
     pub own: &'a Sources,

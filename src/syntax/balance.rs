@@ -99,7 +99,7 @@ fn starts_item(text: &str, tokens: &[Token], i: usize) -> Option<Certainty> {
     }
 }
 
-/// Whether the tokens from here on are `path =`, in whatever spelling.
+/// Whether the tokens from here on are `path =`, in any spelling.
 pub(super) fn starts_field(text: &str, tokens: &[Token], mut i: usize) -> bool {
     while tokens.get(i).is_some_and(|t| t.kind == Kind::Word) {
         match tokens.get(i + 1).map_or("", |t| t.text(text)) {
@@ -188,7 +188,7 @@ impl Scan<'_, '_> {
         self.powers -= own.min(self.powers);
     }
 
-    /// Notes where the item around the innermost bracket could have ended.
+    /// Notes the possible end of the item around the innermost bracket.
     fn end_line(&mut self) {
         let (Some(top), Some(last)) = (self.stack.last_mut(), self.last) else { return };
         // Only the line that opened the bracket counts.
@@ -276,7 +276,7 @@ impl Scan<'_, '_> {
             .is_some_and(|t| t.start > 0 && text.as_bytes()[t.start - 1] != b'\n')
     }
 
-    /// A closing bracket of a kind that is not open: the wrong one for an opener on this line, or one too many.
+    /// A closing bracket of a kind that is not open: a wrong bracket for an opener on this line, or an extra bracket.
     fn close_nothing(&mut self, i: usize, bracket: char) {
         let token = self.tokens[i];
         let Some(top) = self.stack.last().filter(|o| o.line == self.line) else {

@@ -36,7 +36,7 @@ impl<'p> Builder<'p> {
             let list = format!("{} = {}", path.trim(), listed(first.trim(), items));
             let last = start + items.trim_end().len();
             let mistake = Diagnostic::new(Code::E0101, "several values need brackets")
-                .label(self.span(start, last), "where a field is expected");
+                .label(self.span(start, last), "a field is expected here");
             let whole = self.span(before.0, last);
             self.report(mistake.write(whole, list));
         }

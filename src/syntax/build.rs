@@ -394,7 +394,7 @@ impl<'p> Builder<'p> {
         name
     }
 
-    /// The `///` lines directly above what starts here, if it is the first on its line.
+    /// The `///` lines directly above the item that starts here, if it is the first on its line.
     fn docs(&self, start: usize) -> Vec<String> {
         let text = &self.prepared.text;
         let mut line = text[..start].trim_end_matches([' ', '\t', '\r', ',']).len();

@@ -42,7 +42,7 @@ impl Draft<'_> {
         part.split_whitespace().collect::<Vec<_>>().join(" ")
     }
 
-    /// Writes `new` over a token and blanks what is left of it, line breaks excepted.
+    /// Writes `new` over a token and replaces the rest of the token by blanks, except line breaks.
     pub fn overwrite(&mut self, token: &Token, new: &str) {
         for (i, byte) in self.bytes[token.start..token.end].iter_mut().enumerate() {
             match new.as_bytes().get(i) {

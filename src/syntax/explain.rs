@@ -31,7 +31,7 @@ impl<'p> Builder<'p> {
         self.explain(rule, pair.as_span().start(), pair.as_span().start(), pair.as_span().end())
     }
 
-    /// Reports why the text from `start` to `end` is not what `exact` reads; everything before `junk` is fine.
+    /// Reports why the rule `exact` cannot read the text from `start` to `end`; everything before `junk` is right.
     pub fn explain(&mut self, exact: Rule, start: usize, junk: usize, end: usize) -> Explained {
         let text: &'p str = &self.prepared.text;
         let path = self.leading_path(start, end);
@@ -359,7 +359,7 @@ fn expected(error: &Error<Rule>) -> Vec<&'static str> {
 
 fn message(expected: &[&str], found: &str) -> String {
     match expected {
-        [] => format!("{found} cannot stand here"),
+        [] => format!("{found} is not allowed here"),
         [only] => format!("expected {only}, found {found}"),
         [first @ .., last] => format!("expected {} or {last}, found {found}", first.join(", ")),
     }

@@ -89,7 +89,7 @@ fn end_of_fields(text: &str, tokens: &[Token], first: usize) -> Option<usize> {
     tokens[first..end].iter().rev().find(|t| t.kind != Kind::LineBreak && !t.is_comment()).map(|t| t.end)
 }
 
-/// The first token of the line behind these, if nothing else stands on their own.
+/// The first token of the next line, if the line of these tokens ends behind them.
 fn first_of_next_line(tokens: &[Token], from: usize) -> Option<usize> {
     let next = (from..tokens.len()).find(|k| !tokens[*k].is_comment())?;
     let broken = tokens[next].kind == Kind::LineBreak;

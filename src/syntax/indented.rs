@@ -65,7 +65,7 @@ fn section(draft: &mut Draft, tokens: &mut [Token], i: usize, end: usize, quiet:
     Some(tokens[stop].end)
 }
 
-/// `train ore:` or `pad =` at the end of a line, and fields in the lines below that stand further to the right.
+/// `train ore:` or `pad =` at the end of a line, and fields in the lines below with a larger indent.
 fn block(draft: &mut Draft, tokens: &mut [Token], i: usize, end: usize, quiet: bool) -> Option<usize> {
     let text = draft.original;
     let last = (i..end).rev().find(|k| !tokens[*k].is_comment())?;
@@ -120,7 +120,7 @@ fn block(draft: &mut Draft, tokens: &mut [Token], i: usize, end: usize, quiet: b
             tokens[*sign].kind = Kind::Comment;
         }
     }
-    // a closing word stands alone in the line behind
+    // a closing word is alone in the next line
     let behind = lines_below(tokens, end).nth(inner.len());
     let closer = behind.filter(|k| begins && tokens[*k].text(text) == "end");
     match closer {

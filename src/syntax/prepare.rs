@@ -25,7 +25,7 @@ impl Prepared<'_> {
         (offset - self.inserted.partition_point(|i| *i < offset)).min(self.source.len())
     }
 
-    /// The span in the original of a part of `text`: whole characters, also where shorter ones were written over them.
+    /// The span in the original of a part of `text`: whole characters, also if shorter characters have replaced them.
     pub fn span(&self, start: usize, end: usize) -> Span {
         let (mut start, mut end) = (self.original(start), self.original(end));
         while !self.source.is_char_boundary(start) {
@@ -54,7 +54,7 @@ pub(super) fn prepare(file: FileId, original: &str) -> (Option<Prepared<'_>>, Ve
         let size = original.len() as f64 / f64::from(1 << 20);
         let mistake = Diagnostic::new(Code::E0103, format!("the file has {size:.1} MiB, more than the limit of 8 MiB"))
             .label(Span::new(file, 0, 0), "")
-            .help("move part of it to a module, or tables to a `file(\"...\")`");
+            .help("move declarations to a module, or tables to a `file(\"...\")`");
         return (None, vec![mistake]);
     }
     let mut tokens = tokens(original);

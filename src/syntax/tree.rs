@@ -17,7 +17,7 @@ pub enum Item {
 }
 
 impl Item {
-    /// The whole of it.
+    /// The whole item.
     pub fn span(&self) -> Span {
         match self {
             Item::Use(used) => used.span,

@@ -77,7 +77,7 @@ impl<'p> Builder<'p> {
         Value { kind: ValueKind::Compare { operands, operators }, span }
     }
 
-    /// `a .. b per basis`, either part of it alone too.
+    /// `a .. b per basis`, or only one of the two parts.
     fn range(&mut self, pair: Pair<'p, Rule>) -> Value {
         let (start, mut bounds, mut dots, mut basis) = (pair.as_span().start(), Vec::new(), None, None);
         let mut ends = Vec::new();
@@ -123,7 +123,7 @@ impl<'p> Builder<'p> {
         if self.operations + own > limits::OPERATIONS {
             let message = format!("more than {} operations inside each other", limits::OPERATIONS);
             self.report(
-                Diagnostic::new(Code::E0103, message).label(span, "").help("give parts of it names with `let`"),
+                Diagnostic::new(Code::E0103, message).label(span, "").help("give parts of the value names with `let`"),
             );
             return Value { kind: ValueKind::Error, span };
         }

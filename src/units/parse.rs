@@ -130,7 +130,7 @@ impl Reader<'_> {
         Ok(Unit { factor: base.factor.powf(f64::from(hundredths) / 100.0), dimension })
     }
 
-    /// `^2`, `^-1`, `^1.5`, `²` or `³`, in hundredths; 100 where there is none.
+    /// `^2`, `^-1`, `^1.5`, `²` or `³`, in hundredths; 100 without an exponent.
     fn exponent(&mut self) -> Result<i32, UnitError> {
         for (mark, hundredths) in [('²', 200), ('³', 300)] {
             if let Some(rest) = self.rest.strip_prefix(mark) {

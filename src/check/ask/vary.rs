@@ -279,7 +279,7 @@ impl Reader<'_, '_> {
         None
     }
 
-    /// Whether a value may stand where the path leads.
+    /// Whether a value is allowed at the target of the path.
     fn may_stand(&mut self, target: Varied, value: &Value, scope: ScopeId) -> Option<()> {
         let before = self.eval.findings.errors();
         match target {
@@ -325,7 +325,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The values of an axis, and what stands behind its numbers.
+    /// The values of an axis, and the text behind its numbers.
     fn values(&mut self, target: Varied, value: &Value, scope: ScopeId) -> Option<(String, Values)> {
         let (inner, per) = match &value.kind {
             ValueKind::Per(inner, per) => (&**inner, Some(per.clone())),
@@ -638,7 +638,7 @@ impl Suffix {
     }
 }
 
-/// A number as it is told: six digits.
+/// A number as text: six digits.
 fn rounded(x: f64) -> f64 {
     number(x).parse().unwrap_or(x)
 }
@@ -648,7 +648,7 @@ fn with_suffix(x: f64, suffix: &str) -> String {
     format!("{} {suffix}", number(x)).trim_end().to_string()
 }
 
-/// Arguments without the basis that they all share: it may stand at each of them as well as behind the whole.
+/// Arguments without the basis that they all share: it may follow each of them or the whole.
 fn bare(arguments: &[Argument], per: Option<&Name>) -> (Vec<Argument>, Option<Name>) {
     let mut per = per.cloned();
     let strip = |argument: &Argument| match &argument.value.kind {

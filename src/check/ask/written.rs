@@ -13,7 +13,7 @@ use crate::units::{Dimension, parse_unit};
 
 /// The value at the end of a path.
 enum Said {
-    /// A value of the scene or of what it extends.
+    /// A value of the scene or of a base.
     Here(Slot),
     /// The default of its field.
     Default(&'static str),
@@ -45,7 +45,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The text of a value, and its number in the unit of the axis where both are of the same thing.
+    /// The text of a value, and its number in the unit of the axis if both have the same basis.
     fn text_and_number(&self, span: Span, number: Option<(f64, Dimension)>, unit: &str) -> Written {
         let text = one_line(self.eval.files.sources.text(span));
         let (of, per) = split(unit);

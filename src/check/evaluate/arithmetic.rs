@@ -11,7 +11,7 @@ use crate::syntax::tree::{Argument, BinaryOp, Name, Path, UnitText, Value, Value
 use crate::units::{Dimension, parse_unit};
 
 impl Evaluator<'_> {
-    /// Evaluates arithmetic; `None` where a diagnostic has been given.
+    /// Evaluates arithmetic; `None` if a diagnostic has been given.
     pub fn raw(&mut self, value: &Value, scope: ScopeId) -> Option<Raw> {
         self.deeper(1, value.span, |c| c.raw_of(value, scope))
     }
@@ -185,7 +185,7 @@ impl Evaluator<'_> {
     /// Help for a sum of a value and a number without a unit.
     fn instead_of_sum(&self, left: &Value, op: BinaryOp, right: &Value, bare: [bool; 2]) -> Option<String> {
         let [a, b] = [left.span, right.span].map(|span| self.files.sources.text(span));
-        // behind a `let` the two may stand anywhere
+        // behind a `let` the two may be anywhere
         let follows = left.span.file == right.span.file && left.span.end <= right.span.start;
         let between = Span { start: left.span.end, end: right.span.start, ..left.span };
         let between = if follows { self.files.sources.text(between) } else { return None };
@@ -270,7 +270,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// `5 kN-s/m` with a blank in the place of the dash, where that is a number with its unit.
+/// `5 kN-s/m` with a blank instead of the dash, if this is a number with a unit.
 fn dashed_unit(text: &str) -> Option<String> {
     let letter = |c: Option<char>| c.is_some_and(char::is_alphabetic);
     let dash = text

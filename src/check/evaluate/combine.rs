@@ -1,4 +1,4 @@
-//! Arithmetic with profiles: `2 * k` where `k` is one, `k / 2`, `k + 1 mm`, and sums of profiles on the same places.
+//! Arithmetic with profiles: `2 * k` with a profile `k`, `k / 2`, `k + 1 mm`, and sums of profiles on the same places.
 //!
 //! It is done on the syntax tree, before values are evaluated: arithmetic on a profile is moved to every value in it.
 //! Each value is then evaluated and checked against the field like any other value.
@@ -25,7 +25,7 @@ struct Seen {
 type Act<'a> = &'a dyn Fn(Value) -> Value;
 
 impl Evaluator<'_> {
-    /// Whether a value varies along the track: a profile, the name of one, or arithmetic with one.
+    /// Whether a value varies along the track: a profile, the name of a profile, or arithmetic with a profile.
     pub fn varies(&self, value: &Value, scope: ScopeId) -> bool {
         self.varies_within(value, scope, &mut Seen::default())
     }

@@ -31,7 +31,7 @@ impl Evaluator<'_> {
         full
     }
 
-    /// Puts defaults into whatever a slot holds.
+    /// Puts defaults into the value of a slot.
     pub(super) fn complete_slot(&mut self, slot: &mut Slot) {
         match &mut slot.value {
             Val::Record(inner) => *inner = Rc::new(self.complete(inner)),
@@ -119,7 +119,7 @@ impl Evaluator<'_> {
         record.lacks(what, mistake, &mut self.findings);
     }
 
-    /// A line for what is missing, with a hole to be filled: behind the bracket that opens the object.
+    /// A line for a missing field, with a hole, behind the bracket that opens the object.
     fn hole(&self, record: &Record, what: &str) -> Option<Fix> {
         let field = what.trim_matches('`');
         let source = self.files.sources.get(record.span.file);
@@ -135,7 +135,7 @@ impl Evaluator<'_> {
                 (record.span.end as usize + n, &rest[..n])
             }
         };
-        // only names and a colon stand between a header and its bracket
+        // only names and a colon are allowed between a header and its bracket
         let plain = header.chars().all(|c| c.is_alphanumeric() || c.is_whitespace() || "_.:".contains(c));
         let place = Span::new(record.span.file, from + 1, from + 1);
         let empty = source.text[from + 1..].trim_start().starts_with('}');

@@ -121,12 +121,12 @@ impl Evaluator<'_> {
         found
     }
 
-    /// The object of a kind of which the main file has one, complete.
+    /// The only object of a kind in the main file, complete.
     pub fn only(&mut self, kind: &str) -> Option<Record> {
         self.all(kind).into_iter().next()
     }
 
-    /// `solve` of a scene that says nothing about it.
+    /// The default `solve` of a scene without one.
     pub fn default_solve(&mut self) -> Record {
         let Some(kind) = schema::kind("solve") else { unreachable!("the vocabulary has `solve`") };
         let span = Span::new(FileId(0), 0, 0);
@@ -197,7 +197,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// The names in a value that stand alone, without dots.
+/// The single names in a value, without dots.
 fn names_in<'v>(value: &'v Value, names: &mut Vec<&'v Name>) {
     match &value.kind {
         ValueKind::Path(path) => {

@@ -38,7 +38,7 @@ pub struct Evaluator<'m> {
     circles: BTreeSet<Vec<ItemId>>,
     /// Items that something asked for.
     pub(super) used: BTreeSet<ItemId>,
-    /// Entries of the standard library that are named outside of it, and where; nowhere for a default.
+    /// Entries of the standard library that are named outside the library, with the place; a default has no place.
     pub(super) library_uses: BTreeMap<ItemId, Option<Span>>,
     /// Files that name modules of the standard library without bringing it in.
     pub(super) without_library: BTreeSet<ScopeId>,
@@ -54,7 +54,7 @@ const DEEPEST: usize = 1_200;
 const NAME: usize = 20;
 
 impl<'m> Evaluator<'m> {
-    /// Begins with what has been loaded: nothing of it is evaluated yet.
+    /// Begins with the loaded files; nothing is evaluated yet.
     pub fn new(loaded: Loaded<'m>) -> Evaluator<'m> {
         let Loaded { files, scopes, main, standard, diagnostics } = loaded;
         let lost = |d: &&Diagnostic| matches!(d.code, Code::E0101 | Code::E0104 | Code::E0106);
@@ -107,12 +107,12 @@ impl<'m> Evaluator<'m> {
         result
     }
 
-    /// Runs `f` inside an item, so that a circle of names is found and what it uses is noted. Mistakes found inside a
-    /// `let` get the place of use as their second label.
+    /// Runs `f` inside an item, so that a circle of names is found and uses are noted. Mistakes found inside a `let`
+    /// get the place of use as their second label.
     pub fn within<T>(&mut self, id: ItemId, place: Span, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         self.used.insert(id);
         if let Some(start) = self.stack.iter().position(|(item, _)| *item == id) {
-            // one circle is one mistake, wherever it is entered
+            // a circle is reported once, from any of its names
             let mut members: Vec<ItemId> = self.stack[start..].iter().map(|(item, _)| *item).collect();
             members.sort_unstable();
             if !self.circles.insert(members) {
@@ -176,7 +176,7 @@ impl<'m> Evaluator<'m> {
         self.unreadable.iter().any(|s| s.file == span.file && s.start >= span.start && s.end <= span.end)
     }
 
-    /// Whether a name may have been declared where the text could not be read.
+    /// Whether a name may have been declared in an unreadable part of the text.
     pub fn unread_word(&self, name: &Name) -> bool {
         let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
         self.unreadable.iter().any(|s| {
@@ -184,7 +184,7 @@ impl<'m> Evaluator<'m> {
         })
     }
 
-    /// Where a value that stands in a scope comes from.
+    /// The origin of a value in a scope.
     pub fn origin(&self, span: Span, scope: ScopeId) -> Origin {
         if scope == self.standard {
             Origin::Default

@@ -80,7 +80,7 @@ impl Evaluator<'_> {
     }
 
     /// A value that is a name: a word, a `let`, or something in a declaration. `None` for everything else, and for
-    /// numbers, which arithmetic follows by itself.
+    /// numbers, which arithmetic follows.
     fn through_name(&mut self, form: &'static Form, value: &Value, scope: ScopeId) -> Option<Slot> {
         let ValueKind::Path(path) = &value.kind else { return None };
         let error = Slot { value: Val::Error, span: value.span, origin: Origin::Written(value.span) };
@@ -232,7 +232,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Refuses a value of another form, with what to write instead.
+    /// Refuses a value of a wrong form, with help.
     pub(super) fn wrong_form(&mut self, form: &Form, found: &str, span: Span) {
         let instead = self.instead(form, found, span);
         // reports on the signs inside would lead to another value of the same wrong form
@@ -287,7 +287,7 @@ impl Evaluator<'_> {
         (!such.is_empty()).then(|| Help::say(format!("name one, such as {such}, or write `{{ field = value }}`")))
     }
 
-    /// A name in quotes that is an entry of the library, or a file where a profile may stand.
+    /// Help for a text in quotes that is an entry of the library, or a file if a profile is allowed.
     fn entry_or_file(&self, form: &Form, text: &str) -> Option<Help> {
         let inner = text.strip_prefix('"')?.strip_suffix('"')?;
         if matches!(form, Form::Number(m) if m.varies == Varies::Yes) && inner.ends_with(".csv") {
@@ -488,7 +488,7 @@ impl Evaluator<'_> {
         }
         let start = first.key.as_ref().map_or(first.value.span, |key| key.span);
         let whole = start.to(last.value.span);
-        // `write `-20 sleepers` or `-20 m`` says which units there are
+        // `write `-20 sleepers` or `-20 m`` gives the possible units
         let help = other.help.as_deref().unwrap_or_default();
         let wrote = self.files.sources.text(other.labels[0].span);
         let units: Vec<&str> = help.split('`').skip(1).step_by(2).filter_map(|code| code.strip_prefix(wrote)).collect();

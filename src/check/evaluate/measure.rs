@@ -90,7 +90,7 @@ impl Evaluator<'_> {
         (!measure.unit.is_empty()).then(|| Help::say(said))
     }
 
-    /// The unit in which a number is written, else that of its field.
+    /// The unit in which a number is written, else the unit of its field.
     fn unit_written(&self, raw: &Raw, measure: &Measure) -> String {
         let text = self.files.sources.text(raw.span);
         let unit = text.trim_start_matches(|c: char| c.is_ascii_digit() || "+-._".contains(c)).trim();
@@ -162,7 +162,7 @@ impl Evaluator<'_> {
         let text = self.files.sources.text(raw.span);
         let other = self.asked.and_then(|(kind, field)| offers::other_way(kind, field, raw));
         let help = match other {
-            Some(field) => Some(Help::say(format!("write `{field} = {text}`, if that is what it is"))),
+            Some(field) => Some(Help::say(format!("write `{field} = {text}`, if that is what you meant"))),
             None => measures.iter().find_map(|measure| offers::of_other_dimension(measure, raw, text)),
         };
         self.other_dimension(measures[0], raw, expected, help);
@@ -188,7 +188,7 @@ impl Evaluator<'_> {
         );
     }
 
-    /// Refuses numbers without a unit that stand in a span.
+    /// Refuses numbers without a unit in a span.
     pub fn missing_unit(
         &mut self,
         measures: &[&'static Measure],
@@ -327,7 +327,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// A range the other way round: a unit that stands once, behind its second end, stays there.
+/// A range with swapped ends: a unit that is written once, behind the second end, stays there.
 pub fn swapped(text: &str) -> Option<Help> {
     let (from, to) = text.split_once("..")?;
     let (from, to) = (from.trim(), to.trim());

@@ -16,7 +16,7 @@ const HALF_BASE: f64 = 0.39;
 const SMALL: f64 = 1e-4;
 
 impl Measure {
-    /// A value in SI, as it stands in the unit of the range.
+    /// A value in SI, converted to the unit of the range.
     fn shown(&self, value: f64, basis: Option<&str>) -> f64 {
         let unit = parse_unit(self.unit).map_or(1.0, |u| u.factor);
         let of = self.basis.map_or(1.0, |b| {
@@ -53,7 +53,7 @@ impl Measure {
     }
 }
 
-/// What to write instead of numbers without a unit, as they stand in the text.
+/// Help for numbers without a unit, as they are in the text.
 pub fn with_unit(text: &str, values: &[f64], measures: &[&Measure], basis: Option<&str>) -> Help {
     let legal = measures.iter().filter_map(|m| Some((Dimension::of_unit(m.unit), m.legal_unit(values, basis)?)));
     let mut legal: Vec<(Dimension, &str)> = legal.collect();
@@ -120,7 +120,7 @@ pub fn ends_of_other_dimension(measure: &Measure, a: &Raw, b: &Raw) -> Option<He
         .then(|| Help::write(format!("{from} .. {to} {}", measure.unit)).and(&format!(": {why}")))
 }
 
-/// A value in SI in the unit of the field, else in another usual one; nothing where it is out of range.
+/// A value in SI in the unit of the field, else in another usual unit; nothing if it is out of range.
 fn in_own_unit(measure: &Measure, value: f64, basis: Option<&str>) -> Option<String> {
     if !measure.takes(value, basis) {
         return None;

@@ -80,7 +80,7 @@ impl Evaluator<'_> {
         Some(format!("[{}]", entries.iter().map(pair).collect::<Option<Vec<_>>>()?.join(", ")))
     }
 
-    /// How the entries of a list that stand alone become pairs.
+    /// Help to turn the entries of a list without keys into pairs.
     fn as_pairs(&self, key: &Form, content: &Form, entries: &[Entry]) -> String {
         let text = |e: &Entry| self.files.sources.text(e.value.span);
         let names = entries.iter().all(|e| e.key.is_none() && matches!(e.value.kind, ValueKind::Path(_)));

@@ -43,7 +43,7 @@ impl Evaluator<'_> {
         None
     }
 
-    /// Whether a sign of another language has been reported inside a span, and says what to write instead.
+    /// Whether a sign of another language has been reported inside a span, with its own help.
     fn misspelt_inside(&self, span: Span) -> bool {
         let inside = |label: &crate::diag::Label| {
             label.span.file == span.file && label.span.start >= span.start && label.span.end <= span.end

@@ -64,7 +64,7 @@ impl Evaluator<'_> {
         Some(ShapeKind::Random(Random { mean, deviation, correlation, log_normal, seed, path, measure }))
     }
 
-    /// `sd` stands there once or not at all.
+    /// Checks that `sd` is given at most once.
     fn one_sd<'a>(&mut self, sds: &[&'a Argument]) -> Option<Option<&'a Argument>> {
         if let [_, again, ..] = sds {
             self.findings.report(

@@ -1,4 +1,4 @@
-//! Objects: declarations and what they extend. `=` replaces a whole value, a path replaces inside it; nothing merges.
+//! Objects: declarations and their bases. `=` replaces a whole value, a path replaces inside a value; nothing merges.
 
 use super::evaluator::Evaluator;
 use super::value::{Change, Record, Slot, Val};
@@ -10,7 +10,7 @@ use crate::syntax::tree::{Declaration, Field, Item, Name, Path, ValueKind};
 use std::rc::Rc;
 
 impl Evaluator<'_> {
-    /// The object that a declaration stands for, evaluated once.
+    /// The object of a declaration, evaluated once.
     pub fn record(&mut self, id: ItemId, place: Span) -> Option<Rc<Record>> {
         if let Some(done) = self.records.get(&id).filter(|_| !self.follows(id)) {
             self.used.insert(id);
@@ -49,7 +49,7 @@ impl Evaluator<'_> {
             );
             return None;
         }
-        // `const x = 1`: the sign has been reported, with what to write instead
+        // `const x = 1`: the sign has been reported, with help
         let text = &self.files.sources.get(name.span.file).text;
         let end = text[name.span.end as usize..].find('\n').map_or(text.len(), |i| name.span.end as usize + i);
         let on_line = |s: Span| s.file == name.span.file && s.start >= name.span.end && s.end as usize <= end;
@@ -144,7 +144,7 @@ impl Evaluator<'_> {
         self.put(record, &change.field.path.names, &change.field, change.scope);
     }
 
-    /// A path twice in one block, or a path and a longer one inside it.
+    /// Reports a path that is given twice in one block, or a path and a longer path inside it.
     fn duplicates(&mut self, fields: &[Field]) {
         for (i, later) in fields.iter().enumerate() {
             let names = |f: &Field| f.path.names.iter().map(|n| n.text.clone()).collect::<Vec<_>>();
@@ -185,7 +185,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// A field that is not known may stand for one that is: that one is not reported as missing too.
+    /// An unknown field may be a misspelt known field: the known field is then not reported as missing.
     fn excuse(&self, record: &mut Record, name: &Name, field: &Field) {
         // the other fields of a stretch are unknown
         record.partial |= record.kind.plans(&name.text) || record.kind.changes().is_some();
@@ -297,7 +297,7 @@ impl Evaluator<'_> {
         }
         let argument = || {
             let (field, word) = kind.argument(&name.text)?;
-            // a law has one form: its base says which
+            // a law has one form, given by its base
             Some(match kind.name {
                 "law" => Help::write(format!("{}.{}", field.name, name.text)).after("it is an argument of its form: "),
                 _ => {

@@ -4,7 +4,7 @@ use super::number::Number;
 use crate::diag::Span;
 use crate::schema::Measure;
 
-/// A profile with the place where it is written.
+/// A profile with its place in the text.
 #[derive(Debug, Clone)]
 pub struct Shape {
     pub kind: ShapeKind,

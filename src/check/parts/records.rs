@@ -57,7 +57,8 @@ pub fn kept(
 /// Refuses states of a rig: states record rail and sleepers under trains; another command writes the bed of a rig.
 fn states_of_a_rig(span: Span, findings: &mut Findings) {
     let message = "states of a test rig over its cycles are not in this version";
-    let help = "leave `states` out: `cycles.csv`, `loops.csv` and `sensors.csv` have every recorded cycle, and `trackbed pack` writes the grains of the bed before its test";
+    let help = "leave `states` out: `cycles.csv`, `loops.csv` and `sensors.csv` hold every recorded cycle, and \
+                `trackbed pack` writes the grains of the bed before its test";
     findings.report(Diagnostic::new(Code::E0619, message).label(span, "no series of states").help(help));
 }
 

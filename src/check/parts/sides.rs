@@ -113,7 +113,7 @@ fn offer(names: &[(&str, Span)], boundaries: usize, built: &[Built], plans: &[Pl
 
 /// The stiffness, N/m, of the ground or of the structure under one seat of a trackform. The seat lies in its middle,
 /// without other sections beside it. Pads are left out, since soft pads lie on structures to hide their stiffness.
-/// `None` where the stiffness is not known.
+/// `None` if the stiffness is not known.
 fn stiffness(built: &Built, plan: &Plan, asked: Asked) -> Option<f64> {
     // mistakes of the trackform are reported when it is built
     let mut aside = Findings::default();

@@ -218,7 +218,7 @@ fn clash(first: &Instance, a: &Change, later: &Instance, b: &Change, seats: &str
     Diagnostic::new(Code::E0512, message)
         .label(b.field.path.span, format!("set by `{two}`"))
         .label(a.field.path.span, format!("set by `{one}`"))
-        .help("let one span end where the other begins, or set it in one of them")
+        .help("let one span end at the beginning of the other, or set it in only one stretch")
 }
 
 /// The value at a path of an object.
@@ -257,5 +257,5 @@ fn two_plates(first: &Instance, later: &Instance, seats: &str) -> Diagnostic {
     Diagnostic::new(Code::E0512, format!("two approach slabs overlap at {seats}"))
         .label(later.over(), format!("the slab of `{}`", later.stretch.name))
         .label(first.over(), format!("the slab of `{}`", first.stretch.name))
-        .help("let one span end where the other begins")
+        .help("let one span end at the beginning of the other")
 }

@@ -363,7 +363,7 @@ fn step(place: f64, key: Number) -> f64 {
 }
 
 impl Shape {
-    /// Whether a part of it has some kind.
+    /// Whether a part of the shape has some kind.
     fn asks(&self, of: &dyn Fn(&ShapeKind) -> bool) -> bool {
         let inside = match &self.kind {
             ShapeKind::Spans(spans) => spans.iter().any(|(_, inner)| inner.asks(of)),

@@ -11,7 +11,7 @@ use crate::syntax::parse;
 use crate::syntax::tree::{Item, Path, Value, ValueKind};
 
 impl Resolver<'_, '_> {
-    /// The comparison that stands at a place of some file.
+    /// The comparison at a place of a file.
     pub(super) fn comparison(&mut self, span: Span) -> String {
         let scope = self.scope_of(span);
         let text = format!("let comparison = {}", self.eval.files.sources.text(span));
@@ -57,7 +57,7 @@ impl Resolver<'_, '_> {
                 let rest = operands[1..].iter().zip(operators).map(|(o, op)| format!(" {} {o}", op.symbol()));
                 std::iter::once(operands[0].clone()).chain(rest).collect()
             }
-            // nothing else can stand in a comparison
+            // a comparison contains nothing else
             ValueKind::Object { .. } | ValueKind::Hole | ValueKind::Error => "?".into(),
         }
     }

@@ -207,7 +207,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
         }
     }
 
-    /// `layers.ballast = ...`: a pair of a list that stands in the trackform under the stretch. The last one counts.
+    /// `layers.ballast = ...`: a pair of a list in the trackform under the stretch. The last one counts.
     fn replaced_parts(&mut self, record: &Record, field: &'static Field, out: &mut String) {
         let Form::Pairs { value: form, .. } = &field.form else { return };
         let inside = |path: &[syntax::tree::Name]| path.len() == 2 && path[0].text == field.name;

@@ -46,7 +46,7 @@ pub fn mended(tree: &mut Arc<Tree>) -> Vec<Diagnostic> {
     mistakes
 }
 
-/// `track stiff : open { ... }`, where `open` is a trackform and the fields are those of one.
+/// `track stiff : open { ... }`, if `open` is a trackform and the fields are fields of a trackform.
 fn other_kind(d: &Declaration, kinds: &BTreeMap<&str, Option<&'static Kind>>) -> Option<(Declaration, Diagnostic)> {
     let kind = schema::kind(&d.kind.text)?;
     let [base] = d.base.as_ref()?.names.as_slice() else { return None };
@@ -58,7 +58,7 @@ fn other_kind(d: &Declaration, kinds: &BTreeMap<&str, Option<&'static Kind>>) ->
     let name = d.name.as_ref().map_or(String::new(), |name| format!(" {}", name.text));
     let message = format!("a {} cannot extend `{}`, which is a {}", kind.name, base.text, of_base.name);
     let mistake = Diagnostic::new(Code::E0205, message)
-        .label(d.kind.span, format!("its fields are those of a {}", of_base.name))
+        .label(d.kind.span, format!("its fields are fields of a {}", of_base.name))
         .help(format!("write `{}{name} : {}`", of_base.name, base.text))
         .fix(Fix::replace(d.kind.span, of_base.name));
     let mut mended = d.clone();
@@ -66,7 +66,7 @@ fn other_kind(d: &Declaration, kinds: &BTreeMap<&str, Option<&'static Kind>>) ->
     Some((mended, mistake))
 }
 
-/// `trackform: open { ... }`, where nothing is called `open`.
+/// `trackform: open { ... }`, if nothing is called `open`.
 fn name_behind_colon(
     d: &Declaration,
     kinds: &BTreeMap<&str, Option<&'static Kind>>,

@@ -69,7 +69,7 @@ pub fn measured_curve(file: FileId, text: &str, least: usize) -> (Option<Measure
     (Some(curve).filter(|_| reader.diagnostics.is_empty()), reader.diagnostics)
 }
 
-/// A piece of the text with the byte where it begins.
+/// A piece of the text with the offset of its first byte.
 #[derive(Clone, Copy)]
 struct Piece<'a> {
     text: &'a str,

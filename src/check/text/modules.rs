@@ -132,7 +132,7 @@ impl<M: Modules> Modules for Remembered<M> {
     }
 }
 
-/// No modules but the standard library, for scenes that stand in memory.
+/// No modules except the standard library, for scenes in memory.
 pub struct NoModules;
 
 impl Modules for NoModules {

@@ -7,7 +7,7 @@ use crate::syntax::parse;
 use crate::syntax::tree::{Argument, Declaration, Field, Item, Name, Path, Tree, Value, ValueKind};
 use serde::{Deserialize, Serialize};
 
-/// The name of a text that stands for an edited line.
+/// The name of the text of an edited line.
 pub const EDIT: &str = "--set";
 
 /// One override: a path and the text of a value.

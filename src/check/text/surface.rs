@@ -45,8 +45,8 @@ fn not_closed(name: &str, faults: &[MeshFault]) -> Diagnostic {
         Some(FaultKind::OpenEdge) => "close the holes in a mesh tool: only a closed body has a volume",
         Some(FaultKind::InsideOut) => "turn its normals outward in a mesh tool and write it again",
         Some(FaultKind::Winding) => "make its normals agree in a mesh tool and write it again",
-        Some(FaultKind::NonManifoldEdge) => "take out double triangles and walls inside the body",
-        Some(FaultKind::Degenerate) => "let a mesh tool take out triangles without area",
+        Some(FaultKind::NonManifoldEdge) => "remove double triangles and walls inside the body",
+        Some(FaultKind::Degenerate) => "remove triangles without area with a mesh tool",
         _ => "write the surface of a whole grain",
     };
     Diagnostic::new(Code::E0607, format!("`{name}` is not a closed body: {}", told.join(", "))).help(help)
