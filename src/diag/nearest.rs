@@ -1,7 +1,7 @@
 //! The known word that a misspelt word most likely means: the same word in another case, its plural, singular or
 //! abbreviation, or else a word with few different letters.
 
-/// The candidate nearest to `word`, if one is near enough; among equals the first in alphabetical order.
+/// The candidate nearest to `word`, if one is near enough; of equally near candidates the first in alphabetical order.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase();
     candidates

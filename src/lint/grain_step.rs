@@ -12,7 +12,7 @@ use crate::scenario::{Contact, Scenario};
 use crate::units::number;
 use std::f64::consts::PI;
 
-/// Contacts of a grain that count.
+/// Number of contacts of a grain in the rule.
 const CONTACTS: f64 = 6.0;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {

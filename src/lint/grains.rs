@@ -90,7 +90,7 @@ pub(super) fn contact_force(size: f64, pressure: f64) -> f64 {
     PI * size * size * pressure / (CONTACTS * SOLID)
 }
 
-/// How far two grains of a size, m, approach each other under a normal force, N, and the tangent stiffness there, N/m.
+/// Approach of two grains of a size, m, under a normal force, N, and the tangent stiffness at this force, N/m.
 ///
 /// Linear: `F = k d`. Hertz: `F = 4/3 E* sqrt(R*) d^1.5` with `E* = E / 2 (1 - nu^2)` and `R* = R / 2`.
 pub(super) fn approach(contact: &Contact, size: f64, force: f64) -> (f64, f64) {

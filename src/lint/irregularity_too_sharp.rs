@@ -81,7 +81,7 @@ fn second_derivatives(curve: &Curve) -> Vec<(f64, f64)> {
     }
 }
 
-/// Whether a corner or step at x is one that a wheel of any usual radius bridges.
+/// Whether a wheel of a usual radius bridges a corner or step at x.
 fn bridges(profile: &Profile, x: f64) -> bool {
     const RADIUS: f64 = 0.5; // m: a corner has no radius of its own
     let z = |dx: f64| profile.value(x + dx);

@@ -137,7 +137,7 @@ fn asked_for(scenario: &Scenario, rule: Code) -> bool {
     scenario.warn.iter().chain(&scenario.deny).any(|named| Some(named.as_str()) == rule.rule())
 }
 
-/// The scene as each of its trains would lead it.
+/// The scene once for each train, with this train as the leading train.
 fn led_by_each<'a>(scenario: &'a Scenario, graph: &'a Graph) -> Vec<(Cow<'a, Scenario>, Cow<'a, Graph>)> {
     let mut views = vec![(Cow::Borrowed(scenario), Cow::Borrowed(graph))];
     let others = graph.blocks().map_or(0, |blocks| blocks.others.len());

@@ -13,9 +13,9 @@ use crate::scenario::{Scenario, Track, Train, Vehicle};
 use crate::units::number;
 use std::f64::consts::PI;
 
-/// Frequencies closer than this share are near.
+/// Largest relative difference of near frequencies.
 const NEAR: f64 = 0.1;
-/// Ranges of speed less than this apart are one, km/h: no train keeps its speed in between.
+/// Ranges of speed with a smaller gap are joined, km/h, because no train keeps its speed in such a gap.
 const GAP: f64 = 5.0;
 
 /// A resonance that passing sleepers excite at one speed.

@@ -37,7 +37,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     vec![diagnostic]
 }
 
-/// Says which transitions are the other way round.
+/// The message that names the transitions with a wrong side.
 fn message(track: &Track, swapped: &[usize]) -> String {
     let named = |i: &usize| format!("`{}`", track.transitions[*i].name);
     match swapped {

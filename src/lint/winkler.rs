@@ -5,7 +5,7 @@ use crate::graph::{Graph, SupportNode};
 use crate::scenario::{Foot, Scenario, Section, Track, Vehicle, point_stiffness};
 use crate::solvers::settlement::Peak;
 
-/// A section smeared along the rail.
+/// A section as a continuous foundation along the rail.
 pub struct Winkler {
     /// Foundation modulus: seat stiffness over spacing, N/m per metre.
     pub modulus: f64,

@@ -16,7 +16,7 @@ enum LineEnd {
     NotReached,
     /// The item continues in the next line, or begins there.
     GoesOn,
-    /// Behind the token that ends here the item could have ended too.
+    /// The item could also have ended behind the token that ends here.
     At(usize),
 }
 
@@ -160,7 +160,7 @@ impl Scan<'_, '_> {
         Ok(())
     }
 
-    /// Counts powers of powers: the parser goes one call deeper for each.
+    /// Counts powers of powers, because each needs one more nested call of the parser.
     fn sign(&mut self, token: Token) -> Result<(), Diagnostic> {
         match token.text(self.draft.original) {
             "^" => {
@@ -352,7 +352,7 @@ impl Scan<'_, '_> {
         self.draft.report(mistake);
     }
 
-    /// At the end of the file everything still open is unclosed.
+    /// Reports all brackets that are open at the end of the file.
     fn finish(&mut self) {
         while let Some(opener) = self.stack.pop() {
             let at = self.likely_end(&opener);

@@ -94,7 +94,7 @@ fn atoms(text: &str) -> Vec<Atom> {
     out
 }
 
-/// Takes out the line breaks inside an item: behind a sign, and before the `{` of a declaration.
+/// Removes the line breaks inside an item: behind a sign, and before the `{` of a declaration.
 fn join(atoms: &mut Vec<Atom>) {
     let mut depth = 0_usize;
     let mut kept: Vec<Atom> = Vec::with_capacity(atoms.len());

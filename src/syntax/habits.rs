@@ -208,7 +208,7 @@ fn unit_or_remark(word: &str, before: &str, rest: &str, after: &str) -> Option<S
     }
 }
 
-/// Profiles by their names in EN 13674, which begin with a digit, and in the library.
+/// Rail profiles: the names in EN 13674, which begin with a digit, and the names in the library.
 const RAILS: [(&str, &str); 8] = [
     ("60E1", "UIC60"),
     ("60E2", "UIC60"),
@@ -220,7 +220,7 @@ const RAILS: [(&str, &str); 8] = [
     ("60N", "CHN60"),
 ];
 
-/// The name in the library for one that begins with a digit, or that has a blank or a dash.
+/// The name in the library for a name that begins with a digit, or that has a blank or a dash.
 fn library_name(word: &str, before: &str, found: Token) -> Option<String> {
     let ours = |name: &str| RAILS.iter().find(|(theirs, _)| *theirs == name).map(|(_, ours)| *ours);
     if found.kind == Kind::Number && before.ends_with('.') && before.starts_with(|c: char| c.is_ascii_alphabetic()) {

@@ -1,4 +1,4 @@
-//! From text to a tree, and from text to tidy text.
+//! From text to a tree, and from text to formatted text.
 //!
 //! [`parse`] reads a file whole and reports all its mistakes at once: `token` cuts it; `uses`, `quotes`, `declared`,
 //! `indented`, `header`, `foreign` and `balance` repair it so that `grammar/track.pest` can read it to the end, `build`

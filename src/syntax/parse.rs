@@ -1,4 +1,4 @@
-//! Reads a file whole: one tree, and every mistake of the text.
+//! Reads a whole file: one tree, and every mistake of the text.
 
 use pest::Parser;
 

@@ -116,7 +116,8 @@ impl<'p> Builder<'p> {
         }
     }
 
-    /// `a + b - c` or `a * b / c`, from the left. The tree is as deep as the chain is long, so its length has a bound.
+    /// `a + b - c` or `a * b / c`, from the left. The depth of the tree grows with the length of the chain, so the
+    /// length has a bound.
     fn chain(&mut self, pair: Pair<'p, Rule>) -> Value {
         let own = pair.clone().into_inner().count() / 2;
         let span = self.span_of(&pair);
@@ -288,7 +289,7 @@ impl<'p> Builder<'p> {
                 Rule::entry => {
                     let (at, end) = (part.as_span().start(), part.as_span().end());
                     let entry = if in_groups { self.group_as_pair(part) } else { self.entry(part, &mut told) };
-                    // `[soil: 0,3 m]`: a pair, then a bare number that hangs on its comma.
+                    // `[soil: 0,3 m]`: a pair, then a bare number directly behind its comma.
                     if let Some(previous) = entries.last_mut()
                         && previous.key.is_some()
                         && entry.key.is_none()

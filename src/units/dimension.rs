@@ -37,7 +37,7 @@ impl Dimension {
         Dimension(exponents)
     }
 
-    /// The dimension of `unit`, which the program itself wrote.
+    /// The dimension of `unit`, which is written in the program.
     pub fn of_unit(unit: &str) -> Dimension {
         parse_unit(unit).map_or(Dimension::NONE, |u| u.dimension)
     }

@@ -100,7 +100,7 @@ fn asked_by(
     Questions(asked)
 }
 
-/// Whether a form holds questions.
+/// Whether a form contains questions.
 fn asks(form: &Form) -> bool {
     match form {
         Form::Comparison | Form::Expression | Form::Axes | Form::Settings => true,

@@ -24,7 +24,7 @@ const fn any_in(unit: &'static str) -> schema::Measure {
 }
 
 impl Reader<'_, '_> {
-    /// Whether a call reduces a response. `max` and `min` of anything else are functions of numbers.
+    /// Whether a call reduces a response. Otherwise `max` and `min` are functions of numbers.
     pub(super) fn reduces(&self, word: &Name, arguments: &[Argument], scope: ScopeId) -> bool {
         if !REDUCTIONS.contains(&word.text.as_str()) {
             return false;

@@ -55,7 +55,7 @@ fn study(record: &Record, asked: &Questions, eval: &mut Evaluator<'_>) -> Option
     })
 }
 
-/// No value varies twice, and none inside another.
+/// Checks that no value varies twice, and that no varied value lies inside another.
 fn varied_once(paths: &[(String, Span)], findings: &mut Findings) -> bool {
     let inside = |a: &str, b: &str| a == b || b.strip_prefix(a).is_some_and(|rest| rest.starts_with('.'));
     let mut once = true;

@@ -292,7 +292,7 @@ impl Reader<'_, '_> {
         (self.eval.findings.errors() == before).then_some(())
     }
 
-    /// A number for a `let` that is a number has its dimension.
+    /// Checks that a number for a numeric `let` has the dimension of the `let`.
     fn like_the_let(&mut self, id: ItemId, value: &Value, scope: ScopeId) {
         let tree = self.eval.scopes[id.scope].tree.clone();
         let Item::Let(binding) = &tree.items[id.item] else { return };
@@ -465,7 +465,7 @@ impl Reader<'_, '_> {
         Some((suffix, [a.value / size, b.value / size]))
     }
 
-    /// Refuses ends that both lack their unit, once.
+    /// Refuses two ends without units, in one diagnostic.
     fn with_units(
         &mut self,
         target: Varied,
@@ -681,7 +681,7 @@ pub(super) fn is_number(value: &Value) -> bool {
     }
 }
 
-/// Whether the unit after a list goes to this entry.
+/// Whether the unit after a list applies to this entry.
 fn unit_of_all(value: &Value) -> bool {
     match &value.kind {
         ValueKind::Number { unit, .. } => unit.is_none(),

@@ -17,7 +17,7 @@ enum Said {
     Here(Slot),
     /// The default of its field.
     Default(&'static str),
-    /// Nothing: the part is not there.
+    /// Nothing: the part does not exist.
     Nothing,
 }
 

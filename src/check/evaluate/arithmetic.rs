@@ -52,7 +52,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Reads the units of a value that nothing has asked for.
+    /// Reads the units of an unused value.
     pub fn units_in(&mut self, value: &Value) {
         match &value.kind {
             ValueKind::Number { value: number, unit } => {

@@ -251,7 +251,7 @@ impl Evaluator<'_> {
         Some(sums)
     }
 
-    /// Whether two values are written alike.
+    /// Whether two values are written in the same way.
     fn same_text(&self, a: &Value, b: &Value) -> bool {
         let words = |value: &Value| self.files.sources.text(value.span).split_whitespace().collect::<String>();
         words(a) == words(b)
@@ -312,7 +312,7 @@ fn sum_of_ends(mut a: Vec<Argument>, mut b: Vec<Argument>, sum: &dyn Fn(Value, V
     a
 }
 
-/// The unit of a literal, its sign aside.
+/// The unit of a literal, also behind a sign.
 fn unit_of(value: &Value) -> Option<&UnitText> {
     match &value.kind {
         ValueKind::Number { unit, .. } => unit.as_ref(),

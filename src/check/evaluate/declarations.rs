@@ -55,7 +55,7 @@ impl Evaluator<'_> {
         found
     }
 
-    /// The declaration of the main file that an object is.
+    /// The declaration of an object in the main file.
     pub fn item_of(&self, record: &Record) -> Option<ItemId> {
         let items = &self.scopes[self.main].tree.items;
         let item = items.iter().position(|item| matches!(item, Item::Declaration(d) if header(d) == record.span))?;

@@ -20,9 +20,9 @@ pub struct Evaluator<'m> {
     pub scopes: Vec<Scope>,
     /// The main file.
     pub main: ScopeId,
-    /// Where defaults are read: every module of the standard library is known there.
+    /// The scope of defaults: every module of the standard library is known there.
     pub standard: ScopeId,
-    /// Where the text could not be read.
+    /// Unreadable parts of the text.
     pub(super) unreadable: Vec<Span>,
     /// Objects evaluated so far.
     pub(super) records: HashMap<ItemId, Option<Rc<Record>>>,
@@ -30,13 +30,13 @@ pub struct Evaluator<'m> {
     pub(super) numbers: HashMap<ItemId, Option<Raw>>,
     /// Defaults of the schema, parsed.
     pub(super) defaults: HashMap<&'static str, Rc<Value>>,
-    /// Items being evaluated, with the place that asked.
+    /// Items being evaluated, with the place that needs them.
     stack: Vec<(ItemId, Span)>,
-    /// Values inside values at this moment, against [`DEEPEST`].
+    /// Current depth of values inside values, limited by [`DEEPEST`].
     depth: usize,
     /// Circles of names reported so far.
     circles: BTreeSet<Vec<ItemId>>,
-    /// Items that something asked for.
+    /// Used items.
     pub(super) used: BTreeSet<ItemId>,
     /// Entries of the standard library that are named outside the library, with the place; a default has no place.
     pub(super) library_uses: BTreeMap<ItemId, Option<Span>>,

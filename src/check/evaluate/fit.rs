@@ -244,7 +244,7 @@ impl Evaluator<'_> {
         );
     }
 
-    /// Shows the other party of the mistake that was just reported at a place.
+    /// Adds a related place to the mistake that was just reported at a place.
     fn also_at(&mut self, place: Span, span: Span, text: &str) {
         if let Some(last) =
             self.findings.diagnostics.last_mut().filter(|d| d.labels.len() == 1 && d.labels[0].span == place)
@@ -573,7 +573,7 @@ fn span_of(text: &str) -> Option<String> {
     Some(format!("{} .. {}", from.trim(), to.trim()))
 }
 
-/// Whether a bare name is read by the form itself, not looked up.
+/// Whether the form itself reads a bare name, without looking it up.
 fn reads_names(form: &Form) -> bool {
     match form {
         Form::Name | Form::Response | Form::Rule | Form::Comparison | Form::Expression => true,

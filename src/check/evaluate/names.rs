@@ -99,7 +99,7 @@ impl Evaluator<'_> {
                 Help::write(behind.trim_start_matches('.')).and(": `use std` brings its modules in by their own names"),
             )
         } else if library && !here.modules.contains_key(&name.text) {
-            // one line is missing, however many modules it would have brought in
+            // one missing line is reported once, for all its modules
             if !self.without_library.insert(scope) || self.wanted_library(name.span) {
                 return;
             }
@@ -148,7 +148,7 @@ impl Evaluator<'_> {
         })
     }
 
-    /// The entry of the standard library with that name, else one with a name near to it, with its module.
+    /// The entry of the standard library with that name, else the entry with a similar name, with its module.
     pub(super) fn entry_called(&self, name: &str) -> Option<String> {
         let modules = &self.scopes[self.standard].modules;
         let entries = modules.iter().flat_map(|(module, scope)| {

@@ -1,4 +1,4 @@
-//! Numbers: as arithmetic makes them, and as a field holds them.
+//! Numbers: results of arithmetic, and values of fields.
 
 use crate::diag::Span;
 use crate::units::Dimension;

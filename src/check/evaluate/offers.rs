@@ -26,14 +26,14 @@ impl Measure {
         value * of / unit
     }
 
-    /// Whether a value in SI lies in the range, some rounding apart.
+    /// Whether a value in SI lies in the range, with some rounding.
     fn takes(&self, value: f64, basis: Option<&str>) -> bool {
         let shown = self.shown(value, basis);
         let slack = 1e-9 * shown.abs();
         (self.min - slack..=self.max + slack).contains(&shown)
     }
 
-    /// Whether a value in SI is one that people write here.
+    /// Whether a value in SI is a usual value here.
     fn likely(&self, value: f64, basis: Option<&str>) -> bool {
         let shown = self.shown(value, basis);
         self.takes(value, basis) && (self.min != 0.0 || shown == 0.0 || shown >= SMALL * self.max)
@@ -129,7 +129,7 @@ fn in_own_unit(measure: &Measure, value: f64, basis: Option<&str>) -> Option<Str
     Some(format!("{} {}", four_digits(value / unit), measure.unit).trim_end().to_owned())
 }
 
-/// From the quantity that was found to the expected one: a factor, the power of the value, and why.
+/// Conversion from the found quantity to the expected quantity: a factor, the power of the value, and the reason.
 fn conversion(expected: Dimension, found: Dimension) -> Option<(f64, i32, &'static str)> {
     let gravity = Dimension::of_unit("m/s^2");
     let turn = std::f64::consts::TAU;

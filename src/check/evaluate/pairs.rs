@@ -67,7 +67,7 @@ impl Evaluator<'_> {
         Some(Val::Pairs(pairs))
     }
 
-    /// A list whose keys are numbers and whose values are names, the other way round.
+    /// A list with numbers as keys and names as values, with keys and values swapped.
     fn swapped(&self, key: &Form, entries: &[Entry]) -> Option<String> {
         let number = |value: &Value| matches!(value.kind, ValueKind::Number { .. });
         let name = |value: &Value| matches!(value.kind, ValueKind::Path(_));

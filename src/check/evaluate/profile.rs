@@ -174,7 +174,7 @@ impl Evaluator<'_> {
         Some(ShapeKind::Ramp { from: a?, to: b?, smooth: word.text == "smooth", over })
     }
 
-    /// Refuses arguments that a word does not have: one by its place, and these by name.
+    /// Refuses arguments that a word does not have; it has one argument by place, and these by name.
     pub(super) fn arguments_of(&mut self, word: &Name, arguments: &[Argument], named: &[&str]) -> Option<()> {
         let mut seen: Vec<&str> = Vec::new();
         for (i, argument) in arguments.iter().enumerate() {

@@ -116,7 +116,7 @@ impl Evaluator<'_> {
         Some(raw.value * factor / mean.factor)
     }
 
-    /// Whether there is such a distribution.
+    /// Checks that the distribution exists.
     fn scatters(&mut self, mean: &Number, deviation: f64, log_normal: bool, span: Span) -> Option<()> {
         let mistake = if log_normal && mean.value <= 0.0 {
             Diagnostic::new(Code::E0405, "the mean of a log-normal value must be positive")

@@ -318,7 +318,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// The place by which a declaration is known.
+/// The place that identifies a declaration.
 pub fn header(declaration: &Declaration) -> Span {
     declaration.name.as_ref().map_or(declaration.kind.span, |name| declaration.kind.span.to(name.span))
 }
@@ -349,8 +349,8 @@ fn sets_path(field: &Field, path: &str) -> bool {
     }
 }
 
-/// Takes the slot at a path away. A mass that goes leaves its pitch inertia behind as a radius of gyration, so that the
-/// inertia scales with the mass that takes its place.
+/// Removes the slot at a path. If a mass is removed, its pitch inertia is kept as a radius of gyration, so that the
+/// inertia scales with the new mass.
 fn remove(record: &mut Record, path: &str) {
     let Some((first, rest)) = path.split_once('.') else {
         if path == "mass" && record.kind.name == "car_body" {

@@ -187,7 +187,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// How many vehicles a value of `train.vehicles` names.
+/// The number of vehicles in a value of `train.vehicles`.
 fn vehicles(value: &Value) -> Option<u64> {
     let ValueKind::List { entries, .. } = &value.kind else { return Some(1) };
     let count = |value: &Value| match value.kind {

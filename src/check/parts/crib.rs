@@ -24,7 +24,7 @@ pub fn crib(form: &Record, layers: Option<&[Stratum]>, findings: &mut Findings) 
     (on_sleepers && filled && fits == [true; 2]).then_some(Crib { height, shoulder })
 }
 
-/// A shoulder is as high as the crib, and needs one.
+/// Refuses a shoulder without a crib, because a shoulder is as high as the crib.
 fn shoulder_alone(form: &Record, shoulder: Option<Given>, findings: &mut Findings) {
     let (Some(_), Some(slot), false) = (shoulder, form.get("shoulder"), form.unknown("crib")) else { return };
     let mistake =
@@ -48,7 +48,7 @@ fn has_sleepers(form: &Record, on_sleepers: bool, findings: &mut Findings) -> bo
     false
 }
 
-/// Grains lie beside sleepers and not on them.
+/// Checks that the crib is not higher than the sleepers.
 fn is_no_higher(form: &Record, height: Given, findings: &mut Findings) -> bool {
     let Some(sleeper) = form.record("sleeper") else { return true };
     let Some(most) = sleeper.number("height").map(|n| n.value) else { return true };
@@ -70,7 +70,7 @@ fn is_no_higher(form: &Record, height: Given, findings: &mut Findings) -> bool {
     false
 }
 
-/// The top layer of grains fills the cribs.
+/// Checks that there is a layer of grains to fill the cribs.
 fn has_grains(form: &Record, layers: Option<&[Stratum]>, findings: &mut Findings) -> bool {
     let granular = |layer: &Stratum| matches!(layer.ground, Ground::Granular(..));
     if layers.is_none_or(|layers| layers.iter().any(granular)) {

@@ -168,7 +168,7 @@ pub fn extended_by(form: &Record, stretches: &[&Instance], eval: &mut Evaluator<
     extended
 }
 
-/// Stretches as the scene keeps them, for drawing.
+/// Stretches of the scene, for drawing.
 pub fn described(stood: &[Instance]) -> Vec<Stretch> {
     let what = |instance: &Instance| {
         let mut paths: Vec<String> = instance.stretch.changes.iter().map(|c| c.field.path.text()).collect();

@@ -107,7 +107,7 @@ fn shares(pairs: &[(Slot, Slot)], span: Span, findings: &mut Findings) -> Option
     None
 }
 
-/// How many trains of each kind run, to the nearest whole train, and the axles of all.
+/// The number of trains of each kind, rounded to whole trains, and the axles of all trains.
 fn trains_of_mix(
     trains: &[Train],
     shares: &[(f64, Span)],
@@ -145,7 +145,7 @@ fn trains_of_mix(
     Some((counts, axles))
 }
 
-/// Axles of a count that may be given as the mass carried: whole trains, to the nearest.
+/// Axles of a count that may be given as the mass carried, rounded to whole trains.
 fn whole_trains(slot: &Slot, train: &Train, findings: &mut Findings) -> Option<u64> {
     let Val::Number(n) = slot.value else { return None };
     if n.dimension == Dimension::MASS {

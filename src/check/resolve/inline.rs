@@ -62,7 +62,7 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// A response stays, a `let` is written out, anything else is a number in some object.
+    /// A response is kept, a `let` is replaced by its value, and any other name is a number in an object.
     fn inline_path(&mut self, path: &Path, scope: ScopeId) -> String {
         if path.names.len() == 1 && Response::of_name(&path.names[0].text).is_some() {
             return path.text();

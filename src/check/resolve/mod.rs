@@ -170,7 +170,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
         out
     }
 
-    /// A scene without a title is called as its file.
+    /// The title; without one the name of the file.
     fn title(&self) -> String {
         let name = &self.eval.files.sources.get(diag::FileId(0)).name;
         let stem = name.rsplit(['/', '\\']).next().unwrap_or(name).trim_end_matches(".track");
@@ -278,7 +278,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
     }
 }
 
-/// Whether some field reads a bare name as a word of its own.
+/// Whether a field reads a bare name as a word.
 fn is_word(name: &str) -> bool {
     let reserved = ["use", "let", "as", "per", "yes", "no", "all", "rest"];
     reserved.contains(&name) || schema::word(name).is_some() || schema::kind(name).is_some()

@@ -9,7 +9,7 @@ use crate::schema::{Field, Form, Word};
 use crate::units::Dimension;
 use std::collections::BTreeMap;
 
-/// `"text"`, its quotes and backslashes marked.
+/// `"text"`, with escaped quotes and backslashes.
 pub(super) fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }
@@ -39,7 +39,7 @@ impl Resolver<'_, '_> {
             Val::Response(response) => response.name().to_string(),
             Val::Written(..) if matches!(form, Form::Comparison) => self.comparison(slot.span),
             Val::Hole => "?".into(),
-            // studies are left out, and a sound file has nothing unreadable
+            // studies are left out, and a file without mistakes has no unreadable values
             Val::Written(..) | Val::Error => self.eval.files.sources.text(slot.span).to_string(),
         }
     }

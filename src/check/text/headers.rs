@@ -95,7 +95,7 @@ fn called_kind(d: &Declaration) -> Option<&'static Kind> {
     schema::kind(called(Names::Kinds, &d.kind.text, stands)?)
 }
 
-/// `ballast stone { ... }` is read on as a granular.
+/// `ballast stone { ... }` is read as a granular.
 fn foreign_kind(d: &Declaration) -> Option<(Declaration, Diagnostic)> {
     let kind = called_kind(d)?;
     let mistake = Diagnostic::new(Code::E0401, format!("unknown kind `{}`", d.kind.text))

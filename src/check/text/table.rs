@@ -31,7 +31,7 @@ pub struct Cell {
 const MOST_MISTAKES: usize = 20;
 
 impl Table {
-    /// Reads the text of a file, with its mistakes: the first of them, and in the last how many more there are.
+    /// Reads the text of a file, with its first mistakes; the last one gives the number of further mistakes.
     pub fn read(file: FileId, name: &str, text: &str) -> (Option<Table>, Vec<Diagnostic>) {
         let mut reader = Reader { file, mistakes: Vec::new() };
         let table = reader.table(text);

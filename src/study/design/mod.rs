@@ -35,7 +35,7 @@ pub fn design(study: &Study, seed: u64) -> Vec<Vec<Level>> {
     cube.iter().map(|point| axes.iter().zip(point).map(|(axis, u)| level(axis, *u)).collect()).collect()
 }
 
-/// Every combination of the lists, the last axis running fastest.
+/// Every combination of the lists; the last axis changes first.
 fn grid(axes: &[Axis]) -> Vec<Vec<Level>> {
     axes.iter().fold(vec![Vec::new()], |points, axis| {
         let levels = levels(axis);
