@@ -127,7 +127,7 @@ fn a_run_larger_than_the_memory_is_not_started() {
     let limited = [&["check"], &scene[..], &["--set", "solve.memory=1 GiB"]].concat();
     let (_, said) = told(trackbed(&limited).output().unwrap());
     assert!(
-        said.contains("L1022") && said.contains("it may take 1024 MiB"),
+        said.contains("L1022") && said.contains("more than the limit of 1024 MiB"),
         "a rig is held to the memory of its scene: {said}"
     );
 }

@@ -120,11 +120,11 @@ fn no_advice_lengthens_a_bridge() {
     assert_eq!(told(&short_bridge(36.0, 36.0), ""), []);
     let short = told(&short_bridge(18.0, 36.0), "");
     assert!(short.len() == 1 && short[0].0 == Code::L1003, "{short:#?}");
-    assert!(short[0].2.starts_with("put 4 m more track at the left end of the model"), "{short:#?}");
+    assert!(short[0].2.starts_with("add 4 m of track at the left end of the model"), "{short:#?}");
     let longer = told(&short_bridge(24.0, 36.0), "");
     assert_eq!(longer, [], "the advice helps");
     let scene = with(&short_bridge(36.0, 36.0), "bridge: 4.8 m", "bridge: 5 m");
-    one(&scene, "", Code::E0502, "where the length is given, write `spacing = 5 m / 8`");
+    one(&scene, "", Code::E0502, "if the length is fixed, write `spacing = 5 m / 8`");
     let spaced = with(&scene, "45 MN/m per seat }", "45 MN/m per seat }, spacing = 5 m / 8");
     assert_eq!(told(&spaced, ""), []);
 }

@@ -117,7 +117,7 @@ law second { form = nasrollahi(alpha = 1 mm), cycles = 1 .. 10 axles }",
         |code: Code| -> Vec<&str> { of(code).iter().map(|d| compiled.sources.text(d.labels[0].span)).collect() };
     assert_eq!(asked(Code::L1008), ["first", "second"], "{}", told(&compiled));
     assert_eq!(asked(Code::L1004), ["first", "second"], "{}", told(&compiled));
-    assert!(of(Code::L1008)[0].message.contains("35 kN a seat, wheels of 98.1 kN at rest give at most about 3"));
+    assert!(of(Code::L1008)[0].message.contains("35 kN per seat, but wheels of 98.1 kN at rest give at most about 3"));
 }
 
 /// Keeps what laws say, and the checkpoint after some blocks as it would lie on a disk.

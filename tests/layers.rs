@@ -247,8 +247,8 @@ fn what_the_ground_cannot_be_is_refused_once() {
     let layers = |layers: &str| format!("stretch a {{ over = -9 .. -1 sleepers, layers = [{layers}] }}");
     let cases: &[(&str, &str, String, Code, &str)] = &[
         (stone, "stone: 0.4 m, fill: 2 m", law.into(), Code::E0419, "granular `stone` needs its `youngs_modulus`"),
-        ("", PLAIN, layers("top: rest, fill: rest"), Code::E0423, "two layers cannot both take"),
-        ("", PLAIN, layers("top: 3 m, fill: rest"), Code::E0423, "nothing is left at seat -9"),
+        ("", PLAIN, layers("top: rest, fill: rest"), Code::E0423, "two layers cannot both have"),
+        ("", PLAIN, layers("top: 3 m, fill: rest"), Code::E0423, "`rest` has no thickness at seat -9"),
         ("", PLAIN, layers("top: 0.4 m, fill: 1 m"), Code::E0424, "are 1400 mm deep at seat -9"),
         ("", PLAIN, slab("-8 .. -2 m", ""), Code::E0425, "ends at -2 m"),
         ("", PLAIN, slab("-6 .. 0 m", "").replace("depth = 400 mm", "depth = 2.2 m"), Code::E0426, "reaches 2500 mm"),

@@ -66,7 +66,7 @@ const PLANTED: &[Planted] = &[
     breaks("vtc", plant("an unknown train", "  trains = ore", "  trains = oer", Code::E0201)),
     breaks("pf", plant("an unknown base", "trackform stiff : open {", "trackform stiff : opne {", Code::E0201)),
     plant("a name twice", "record bed {", "record forces {", Code::E0202),
-    breaks("z", needs("k", plant("a name that needs itself", "let pad_stiffness = 40 MN/m", "let pad_stiffness = 2 * pad_stiffness", Code::E0203))),
+    breaks("z", needs("k", plant("a name that depends on itself", "let pad_stiffness = 40 MN/m", "let pad_stiffness = 2 * pad_stiffness", Code::E0203))),
     breaks("pf", plant("an extension of itself", "trackform stiff : open {", "trackform stiff : stiff {", Code::E0203)),
     plant("a module of the library that is not there", "let bay", "use std.ballast, let bay", Code::E0204),
     plant("a base of another kind", "law mild : laws.varandas_2014", "law mild : rails.UIC60", Code::E0205),

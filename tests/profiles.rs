@@ -563,7 +563,7 @@ fn random_values_beyond_their_range_are_counted() {
         mistake.message
     );
     assert!(
-        mistake.message.ends_with("of the settlement of trackform `open` leave -100 .. 100 mm"),
+        mistake.message.ends_with("of the settlement of trackform `open` are outside -100 .. 100 mm"),
         "{}",
         mistake.message
     );
@@ -623,8 +623,8 @@ fn profiles_that_do_not_combine_are_refused() {
     let with_settlement =
         |lets: &str, value: &str| with(&scene(&format!("settlement = {value}"), "", lets), Files::default());
     let refused = [
-        ("let a = ramp(0 .. 1 mm)", "a * ramp(1 .. 2)", "multiplied or divided"),
-        ("let a = [-12 m: 0 mm, 0 m: 1 mm]", "a * [-12 m: 1, 0 m: 2]", "between places both vary"),
+        ("let a = ramp(0 .. 1 mm)", "a * ramp(1 .. 2)", "in a product or quotient"),
+        ("let a = [-12 m: 0 mm, 0 m: 1 mm]", "a * [-12 m: 1, 0 m: 2]", "both vary between places"),
         (
             "let a = [-12 .. -6 m: ramp(0 .. 1 mm), -6 .. 0 m: 1 mm]",
             "a * [-12 .. -6 m: ramp(1 .. 2), -6 .. 0 m: 1]",
@@ -635,11 +635,11 @@ fn profiles_that_do_not_combine_are_refused() {
             "a / [-12 .. -6 m: ramp(1 .. 2), -6 .. 0 m: 1]",
             "divided by a profile",
         ),
-        ("let a = [-12 .. -6 m: 1 mm, -6 .. 0 m: 1 mm]", "a * [-12 .. -5 m: 2, -5 .. 0 m: 1]", "other places"),
+        ("let a = [-12 .. -6 m: 1 mm, -6 .. 0 m: 1 mm]", "a * [-12 .. -5 m: 2, -5 .. 0 m: 1]", "different places"),
         ("let a = ramp(1 .. 2 mm)", "1 mm / a", "divided by a profile"),
         ("let a = ramp(0 .. 1 mm)", "a + smooth(0 .. 1 mm)", "different forms"),
-        ("let a = ramp(0 .. 1 mm, over = -6 .. 0 m)", "a + ramp(0 .. 1 mm)", "other spans"),
-        ("let a = [-12 m: 0 mm, 0 m: 1 mm]", "a + [-12 m: 0 mm, -1 m: 1 mm, 0 m: 2 mm]", "other places"),
+        ("let a = ramp(0 .. 1 mm, over = -6 .. 0 m)", "a + ramp(0 .. 1 mm)", "different spans"),
+        ("let a = [-12 m: 0 mm, 0 m: 1 mm]", "a + [-12 m: 0 mm, -1 m: 1 mm, 0 m: 2 mm]", "different places"),
         ("let a = random(1 mm, cov = 10 %)", "a + 1 mm", "random profile"),
     ];
     for (lets, value, says) in refused {

@@ -112,10 +112,13 @@ fn wagons_run_no_faster_than_wagons() {
     let at = |vehicle: &str, speed: f64| Scene { vehicle, speed, ..SCENE }.says(Code::L1027);
     assert!(at("vehicles.ore_wagon_20t", 200.0).is_empty());
     let fast = at("vehicles.ore_wagon_20t", 216.0);
-    assert_eq!(fast, ["`wagon` runs at 216 km/h: its car body bounces at 1.6 Hz, on the springs of a freight wagon"]);
+    assert_eq!(
+        fast,
+        ["`wagon` runs at 216 km/h: its car body bounces at 1.6 Hz, as on the springs of a freight wagon"]
+    );
     assert!(at("vehicles.ore_wagon_30t", 120.0).is_empty());
     let heavy = at("vehicles.ore_wagon_30t", 121.0);
-    assert_eq!(heavy, ["`wagon` runs at 121 km/h: vehicles with 29.5 t an axle run at 120 km/h at most"]);
+    assert_eq!(heavy, ["`wagon` runs at 121 km/h: vehicles with 29.5 t per axle run at 120 km/h at most"]);
     assert!(at("vehicles.ice3_middle", 300.0).is_empty() && at("vehicles.manchester_coach", 200.0).is_empty());
 }
 
@@ -136,7 +139,7 @@ fn a_void_is_wide_where_no_wheel_bends_the_rail_down_to_the_support() {
     let wheel = 1.6 * 10e3 * 9.81;
     let closed = 1e3 * (wheel * 1.2f64.powi(3) / (48.0 * 210e9 * 3038.3e-8) + wheel * (1.0 / 40e6 + 1.0 / 40e6));
     let one = at("[0 .. 20.7 m: 0 mm, 20.7 .. 21.3 m: 11 mm, 21.3 .. 42 m: 0 mm]");
-    let said = format!("the void is 11 mm, and a wheel bends the rail down by {closed:.1} mm at most");
+    let said = format!(" is 11 mm, but a wheel bends the rail down by {closed:.1} mm at most");
     assert!(
         one.len() == 1 && one[0].starts_with("1 sleeper hangs") && one[0].ends_with(&said),
         "{one:?}, expected {said}"
@@ -151,7 +154,7 @@ fn a_level_is_held_against_the_limit_of_its_speed() {
     };
     // the mean over 25 m of a triangle of 4 m is 0.08 of its height
     let found = hump(-20.0, 60.0);
-    let said = "at x = 21 m the rail lies 18.4 mm above its mean level over 25 m: at 60 km/h 12 mm are the alert limit";
+    let said = "at x = 21 m the rail lies 18.4 mm above its mean level over 25 m: the alert limit at 60 km/h is 12 mm";
     assert_eq!(found, [said]);
     for (speed, limit) in [(80.0, 12.0), (120.0, 10.0), (160.0, 8.0), (200.0, 7.0)] {
         let height = limit / (1.0 - 8.0 / 101.0);
@@ -172,13 +175,13 @@ fn samples_see_what_a_wheel_does_on_the_track() {
     assert!(at(0.99 / (10.0 * frequency)).is_empty());
     assert_eq!(at(1.01 / (10.0 * frequency)).len(), 1);
     let missed = 100.0 * (1.0 - (PI * frequency * 0.01).cos());
-    let said = format!("a wheel on the track, {frequency:.0} Hz: peaks are missed by up to {missed:.0} %");
+    let said = format!("a wheel on the track ({frequency:.0} Hz): peaks are too small by up to {missed:.0} %");
     let found = at(0.01);
     assert!(found.len() == 1 && found[0].ends_with(&said), "{found:?}, expected {said}");
     // steps of 0.1 ms have one sample each
     assert_eq!(
         at(4e-5),
-        ["samples every 0.04 ms are asked for of a passage in steps of 0.1 ms, which gives one a step"]
+        ["samples every 0.04 ms are asked for, but the time step is 0.1 ms: the run gives one sample per step"]
     );
 }
 
@@ -194,13 +197,13 @@ fn waves_of_the_level_have_steps_and_elements() {
     let length = 10.0 * speed * 2e-4 / wave(1.0);
     assert!(at(1.02 * length, coarse).is_empty());
     let found = at(0.92 * length, coarse);
-    assert!(found.len() == 1 && found[0].contains("runs 3.3 mm a step, 9.2 steps to a wave"), "{found:?}");
+    assert!(found.len() == 1 && found[0].contains("moves 3.3 mm per step, 9.2 steps per wave"), "{found:?}");
     // rail waves of four elements, 2.4 m
     let frequency = 2.0 * PI / 2.4f64.powi(2) * f64::sqrt(210e9 * 3038.3e-8 / 60.21);
     let length = speed / frequency / wave(1.0);
     assert!(at(1.02 * length, one).is_empty() && at(0.9 * length, "").is_empty());
     let found = at(0.98 * length, one);
-    let said = format!("shake the rail with {:.0} Hz", frequency / 0.98);
+    let said = format!("excite the rail at {:.0} Hz", frequency / 0.98);
     assert!(found.len() == 1 && found[0].contains(&said), "{found:?}, expected {said}");
 }
 
@@ -247,7 +250,7 @@ fn the_pressure_on_the_ballast_is_the_seats_share_over_its_area() {
     let wheel = (111e3 + 2.0 * 800.0 + 4.0 * 1341.0) / 8.0 * 9.81;
     let factor = 1.0 + 0.6 * (1.0 + 100.0 / 380.0);
     let force = factor * wheel * lambda(40e6) * 0.3 + (60.21 * 0.6 + 145.0) * 9.81;
-    let said = format!("press with about {:.0} kPa on the ballast: {:.0} kN on 0.15 m^2", force / 150.0, force / 1e3);
+    let said = format!("press on the ballast with about {:.0} kPa: {:.0} kN on 0.15 m^2", force / 150.0, force / 1e3);
     assert!(found.len() == 1 && found[0].contains(&said), "{found:?}, expected {said}");
     // another sleeper's area doubles, its pressure halves
     assert!(
@@ -261,9 +264,12 @@ fn supports_are_counted_beyond_what_was_measured() {
     assert!(says("10 MN/m per seat").is_empty() && says("200 MN/m per seat").is_empty());
     // per sleeper is half per seat
     assert!(says("390 MN/m per sleeper").is_empty());
-    assert_eq!(says("9 MN/m per seat"), ["70 of 70 supports of `open` are softer than measured ones: 9 MN/m per seat"]);
+    assert_eq!(
+        says("9 MN/m per seat"),
+        ["70 of 70 supports of `open` are softer than any measured support: 9 MN/m per seat"]
+    );
     let ramp = says("ramp(100 .. 310 MN/m, over = 1 .. 70 sleepers) per seat");
-    assert_eq!(ramp, ["37 of 70 supports of `open` are stiffer than measured ones: 310 MN/m per seat"]);
+    assert_eq!(ramp, ["37 of 70 supports of `open` are stiffer than any measured support: 310 MN/m per seat"]);
 }
 
 #[test]

@@ -85,7 +85,7 @@ fn sides_against_the_ground_are_told_with_the_line_to_write() {
         ),
         (
             "sections = [open: 42 m, deck: 24 m], transitions = [gare: stiff_to_soft]",
-            "transition `gare` is declared `stiff_to_soft`, but what lies under the pads is stiffer behind it",
+            "transition `gare` is declared `stiff_to_soft`, but the support under the pads is stiffer behind it",
             "transitions = [gare: soft_to_stiff]",
         ),
         (
@@ -120,7 +120,7 @@ fn a_law_of_force_on_a_ballasted_bridge_is_told() {
     };
     let ballasted = "sections = [open: 42 m, bridge: 36 m]";
     let (found, text) = rule(ballasted, "laws.varandas_2014");
-    assert!(found.len() == 1 && found[0].message.contains("on `bridge`, which is stiffer"), "{text}");
+    assert!(found.len() == 1 && found[0].message.contains("the stiffer section `bridge`"), "{text}");
     for (forms, law) in [(ballasted, "laws.guerin_1996"), ("sections = [open: 42 m, deck: 36 m]", "laws.varandas_2014")]
     {
         let (found, text) = rule(forms, law);

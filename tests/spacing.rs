@@ -127,10 +127,10 @@ fn a_layout_that_cannot_be_is_refused() {
     let cases = [
         (text("[-20 m: 0.6 m, 0 m: 0.5 m]", "30 m", ""), Code::E0506, "the spacing of trackform `open` is not given"),
         (text("[-30 m: 0.6 m, -40 m: 0.5 m]", "30 m", ""), Code::E0501, "the track reaches"),
-        (text("random(0.6 m, cov = 40 %, correlation = 2 m)", "30 m", ""), Code::E0605, "leave 0.3 .. 1.2 m"),
+        (text("random(0.6 m, cov = 40 %, correlation = 2 m)", "30 m", ""), Code::E0605, "are outside 0.3 .. 1.2 m"),
         (text("[-30 m: 0.2 m, 0 m: 0.5 m]", "30 m", ""), Code::E0405, "expected 0.3 .. 1.2 m"),
-        (wide, Code::E0407, "lie in each other"),
-        (bridge, Code::E0411, "on a track of several"),
+        (wide, Code::E0407, "overlap: they are"),
+        (bridge, Code::E0411, "on a track with several transitions"),
     ];
     for (text, code, message) in cases {
         let compiled = checked(&text);

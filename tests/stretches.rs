@@ -306,7 +306,7 @@ stretch b { over = -5 .. 5 sleepers, pad.stiffness = 80 MN/m }",
             "stretch a { over = -9 .. -3 sleepers, pad.stiffness = 60 MN/m }",
             "a, a",
             Code::E0512,
-            "stretch `a` meets itself at seats -9 .. -3",
+            "stretch `a` overlaps itself at seats -9 .. -3",
         ),
     ];
     for (stretches, listed, code, message) in cases {
@@ -318,7 +318,10 @@ stretch b { over = -5 .. 5 sleepers, pad.stiffness = 80 MN/m }",
     assert!(found.len() == 1 && found[0].0 == Code::E0504, "{found:?}");
     let text = bridge("stretch a { from = [west, east], over = -40 .. -1 sleepers, usp = usps.soft }", "a");
     let found = mistakes(&text);
-    assert_eq!(found, [(Code::E0512, "stretch `a` meets itself at seats -21 of `west` to -21 of `east`".to_string())]);
+    assert_eq!(
+        found,
+        [(Code::E0512, "stretch `a` overlaps itself at seats -21 of `west` to -21 of `east`".to_string())]
+    );
 }
 
 #[test]

@@ -151,7 +151,7 @@ fn mistakes_of_a_study_are_told_at_their_place() {
     near(&vary("ore.speed: steps(60 .. 90 km/h)"), Code::E0406, "steps", "count = 4");
     near(&vary("open.pad: [pads.soft], open.pad.stiffness: [20] MN/m"), Code::E0707, "open.pad.stiffness", "overlap");
     near(&vary("ore.direction: [forward, sideways]"), Code::E0408, "sideways", "expected");
-    near("study s { vary = [ore.speed: [60, 90] km/h] }", Code::E0403, "study s", "asks for nothing");
+    near("study s { vary = [ore.speed: [60, 90] km/h] }", Code::E0403, "study s", "has no objective and no report");
     near("study s { minimise = dip }", Code::E0403, "study s", "needs `vary`");
     near(
         "study s { vary = [ore.speed: [60] km/h], minimise = max(setlement) }",

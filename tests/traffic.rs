@@ -240,7 +240,7 @@ fn a_mix_that_is_none_is_refused() {
         (
             "traffic { trains = [ore: 99 %, heavy: 1 %], total = 120 axles }",
             Code::E0602,
-            "1.2 axles, less than half a train",
+            "1.2 axles, less than half of one train",
         ),
         ("traffic { trains = [ore: 50 %, heavy: 50 %], total = 120 axles, order = mixed }", Code::E0408, "mixed"),
         ("traffic { trains = [], total = 120 axles }", Code::E0403, "needs a train"),

@@ -1,4 +1,4 @@
-//! What is found to be wrong: diagnostics, each once, and those that wait until every object is known.
+//! Diagnostics of a check: each once, and diagnostics that wait until every object is known.
 
 use crate::diag::{Code, Diagnostic, Span};
 use std::collections::HashSet;
@@ -7,27 +7,27 @@ use std::collections::HashSet;
 #[derive(Default)]
 pub struct Findings {
     pub diagnostics: Vec<Diagnostic>,
-    /// What has been reported, by code, message and place.
+    /// Reported diagnostics, by code, message and place.
     reported: HashSet<(Code, String, Option<Span>)>,
     missing: Vec<Gap>,
 }
 
-/// Something that an object lacks.
+/// A missing part of an object.
 struct Gap {
     object: Span,
-    /// Where the objects stand that it extends.
+    /// Places of the objects that it extends.
     bases: Vec<Span>,
     what: String,
     diagnostic: Diagnostic,
 }
 
 impl Findings {
-    /// Begins with what reading the texts has found.
+    /// Begins with the diagnostics of reading the texts.
     pub fn new(diagnostics: Vec<Diagnostic>) -> Findings {
         Findings { diagnostics, ..Findings::default() }
     }
 
-    /// Takes a mistake once: what is said of a place is not said again because another way leads there.
+    /// Adds a mistake once, even if several paths lead to its place.
     pub fn report(&mut self, diagnostic: Diagnostic) {
         let place = diagnostic.labels.first().map(|l| l.span);
         if self.reported.insert((diagnostic.code, diagnostic.message.clone(), place)) {
@@ -35,13 +35,13 @@ impl Findings {
         }
     }
 
-    /// Notes that the object at a place lacks something. What one of its bases lacks as well is said of the base alone, see
-    /// [`Self::say_missing`].
+    /// Notes that the object at a place lacks a part. A part that one of its bases also lacks is reported for the base
+    /// only, see [`Self::say_missing`].
     pub fn lacks(&mut self, object: Span, bases: &[Span], what: &str, diagnostic: Diagnostic) {
         self.missing.push(Gap { object, bases: bases.to_vec(), what: what.to_string(), diagnostic });
     }
 
-    /// Reports what is missing, once where several objects inherit the gap.
+    /// Reports missing parts, once if several objects inherit the gap.
     pub fn say_missing(&mut self) {
         let missing = std::mem::take(&mut self.missing);
         let gaps: HashSet<(Span, &str)> = missing.iter().map(|gap| (gap.object, gap.what.as_str())).collect();

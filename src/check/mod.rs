@@ -1,9 +1,10 @@
 //! From the tree to the scenario: names, dimensions, fields, ranges, places.
 //!
-//! Everything is checked, whatever else is wrong: a value that could not be understood is marked and hides only what
-//! depends on it. The rooms in the order of the flow, each of which uses those before it: `text` reads files, `evaluate` makes
-//! typed records of their declarations, `places` says where on the track something lies, `parts` makes the parts of the scenario,
-//! `ask` reads what is asked of them; `scene` goes through all of it once, and `resolve` writes it out again.
+//! The check continues after every mistake: a value that could not be understood is marked and hides only values that
+//! depend on it. The modules in the order of the flow, each of which uses the modules before it: `text` reads files,
+//! `evaluate` makes typed records of their declarations, `places` finds places on the track, `parts` makes the parts of
+//! the scenario, `ask` reads the questions about them. `scene` runs these steps once, and `resolve` writes the scene as
+//! text.
 
 mod ask;
 mod evaluate;
@@ -34,31 +35,31 @@ use evaluate::evaluator::Evaluator;
 use text::library::Part;
 use text::loader::{load, seeming_texts};
 
-/// What became of a file: every diagnostic, and the scene where nothing stands against it.
+/// The result of a check: every diagnostic, and the scene.
 #[derive(Debug)]
 pub struct Checked {
     pub sources: Sources,
     pub diagnostics: Vec<Diagnostic>,
-    /// `None` for a library, and where a mistake or a hole leaves a part unknown. Beside errors it serves to find more of
-    /// them; it is not to be run.
+    /// `None` for a library, and if a mistake or a hole leaves a part unknown. A scene beside errors is used to find
+    /// more errors; it must not be run.
     pub scenario: Option<Scenario>,
-    /// The studies of the main file; those without a mistake.
+    /// The studies of the main file that have no mistake.
     pub studies: Vec<Study>,
-    /// What the user's own texts state of the objects that take part, in the order of the texts.
+    /// Fields that the user's own texts state for the objects of the scene, in the order of the texts.
     pub stated: Vec<Stated>,
-    /// Whether nothing stands against a run.
+    /// Whether the scene can be run.
     pub sound: bool,
 }
 
-/// Checks a text that a person calls `name`.
+/// Checks a text; `name` is the name that messages show.
 pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Override]) -> Checked {
     with_evaluator(name, text, modules, overrides, |_| ()).0
 }
 
-/// Checks a text, and asks something of what was found out about it.
+/// Checks a text, and passes the result to a function.
 ///
-/// Only what the user's texts name is read of the library. Where anything is amiss the whole of it is: what was meant may stand
-/// there.
+/// Only entries of the library that the user's texts name are read. After a mistake the whole library is read, because
+/// it may hold the entry that was meant.
 fn with_evaluator<T>(
     name: &str,
     text: &str,
@@ -78,7 +79,7 @@ fn with_evaluator<T>(
     evaluated(Evaluator::new(load(name, text, overrides, Part::Whole, modules)), &ask)
 }
 
-/// Leaves the first of very many errors and of very many warnings, and counts the rest in one more.
+/// Keeps the first errors and the first warnings if there are very many, and counts the rest in one more diagnostic.
 fn bound(diagnostics: &mut Vec<Diagnostic>) {
     let (mut errors, mut warnings) = (0_usize, 0_usize);
     let mut last = None;
@@ -99,16 +100,17 @@ fn bound(diagnostics: &mut Vec<Diagnostic>) {
         (errors, warnings) => format!("{errors} more errors and {warnings} more warnings are not shown"),
     };
     let severity = if more(errors) > 0 { Severity::Error } else { Severity::Warning };
-    let rest =
-        Diagnostic::new(Code::E0103, said).severity(severity).help("mend those that are shown, then check again");
+    let rest = Diagnostic::new(Code::E0103, said)
+        .severity(severity)
+        .help("correct the mistakes that are shown, then check again");
     diagnostics.push(match last {
-        Some(span) => rest.label(Span { start: span.end, ..span }, "the last one that is shown"),
+        Some(span) => rest.label(Span { start: span.end, ..span }, "the last one shown"),
         None => rest,
     });
 }
 
-/// A name that is not known is told once, with every place that asks for it; so is a stretch that its place does not bear, at the
-/// first of its transitions. Takes them in order.
+/// An unknown name is reported once, with every place that uses it. A stretch that does not fit its place is reported
+/// once, at the first of its transitions. Expects diagnostics in order.
 fn one_cause_once(diagnostics: &mut Vec<Diagnostic>) {
     for mistake in std::mem::take(diagnostics) {
         let place = |d: &Diagnostic| d.labels.first().map(|label| label.span);
@@ -120,7 +122,7 @@ fn one_cause_once(diagnostics: &mut Vec<Diagnostic>) {
         match diagnostics.iter_mut().find(same) {
             Some(first) if mistake.code == Code::E0201 => {
                 first.labels.extend(mistake.labels);
-                // one edit mends every place
+                // one edit corrects every place
                 for (fix, other) in first.fixes.iter_mut().zip(mistake.fixes) {
                     fix.edits.extend(other.edits);
                 }

@@ -1,9 +1,9 @@
-//! What checking itself makes of the fields of a scene.
+//! The fields of a scene that the check itself reads.
 
 use crate::scenario::{Scenario, Seat};
 use crate::schema::{Reader, Reads};
 
-/// Fields that act in every plan: where things lie, what stands on what, what is asked of the scene, and the seed of all that is random.
+/// Fields that act in every plan: places, parts, questions about the scene, and the seed of random values.
 pub const ALWAYS_READ: &[&str] = &[
     "scenario.title",
     "scenario.allow",
@@ -80,7 +80,7 @@ const LAYERS: Reads = Reads {
     acts_where: "where sleepers of a track lie on layers of known moduli",
 };
 
-/// What checking reads of a scene beside what always acts.
+/// Fields that the check reads in addition to the fields that always act.
 pub fn readers(scenario: &Scenario) -> Vec<Reader> {
     let on_layers = |seat: &Seat| seat.stack.is_some();
     let track = &scenario.track;

@@ -1,4 +1,4 @@
-//! From evaluated declarations to the scene: every part in its order, each from what is known before it.
+//! From evaluated declarations to the scene: every part in order, each from the parts before it.
 
 use super::ask::reader::{Counting, questions};
 use super::ask::study::studies;
@@ -18,7 +18,7 @@ use crate::diag::{self, Code, Diagnostic, Span};
 use crate::scenario::response::Expectation;
 use crate::scenario::{Loading, RigLoad, Scenario, Study};
 
-/// What a `scenario` says: title and physics rules.
+/// The content of a `scenario`: title and physics rules.
 #[derive(Default)]
 struct Head {
     title: String,
@@ -27,7 +27,7 @@ struct Head {
     warn: Vec<String>,
 }
 
-/// Evaluates every declaration of the user's files, then builds the scene and reads what is asked of it.
+/// Evaluates every declaration of the user's files, then builds the scene and reads the questions about it.
 pub fn scene(eval: &mut Evaluator<'_>) -> (Option<Scenario>, Vec<Study>) {
     if eval.scopes[eval.main].tree.items.is_empty() {
         if !diag::has_errors(&eval.findings.diagnostics) {
@@ -52,7 +52,7 @@ pub fn scene(eval: &mut Evaluator<'_>) -> (Option<Scenario>, Vec<Study>) {
     };
     eval.idle_lets();
     eval.findings.say_missing();
-    // what is misspelt or unread may be what would have used it
+    // a misspelt or unreadable name may be the missing use
     if let Some(track) = track_record.filter(|_| !diag::has_errors(&eval.findings.diagnostics)) {
         let waiting = waiting(&track, eval);
         eval.unused(&roots, &waiting);
@@ -60,8 +60,8 @@ pub fn scene(eval: &mut Evaluator<'_>) -> (Option<Scenario>, Vec<Study>) {
     found
 }
 
-/// Kinds of which objects stand unused because something else is missing: trains where nothing acts, materials where no trackform has
-/// layers and a rig asks for them.
+/// Kinds with objects that are unused because another part is missing: trains without traffic, and materials of a rig
+/// without layers.
 fn waiting(track: &Record, eval: &Evaluator<'_>) -> Vec<&'static str> {
     let (runs, loaded) = (eval.declares("traffic"), eval.declares("load"));
     match (runs, loaded) {
@@ -121,7 +121,7 @@ fn with_track(track_record: &Record, eval: &mut Evaluator<'_>) -> (Option<Scenar
     (assemble(), studies(eval, counting))
 }
 
-/// How test loads act; `None` where there are none.
+/// The kind of test loads; `None` without test loads.
 fn of_loads(loads: Vec<RigLoad>) -> Option<Loading> {
     if loads.is_empty() {
         return None;
@@ -137,7 +137,7 @@ fn expectations(eval: &mut Evaluator<'_>, counting: Counting<'_>) -> Vec<Expecta
     questions(&records, eval, counting).iter().flat_map(|asked| asked.comparisons("that")).collect()
 }
 
-/// Title and physics rules; the file's name where there is no title.
+/// Title and physics rules; without a title the file's name.
 fn head(eval: &mut Evaluator<'_>) -> Head {
     let record = eval.only("scenario");
     let name = &eval.files.sources.get(MAIN_FILE).name;

@@ -1,4 +1,5 @@
-//! What the user's own texts state of the objects that take part in a scene: no defaults, and nothing of the standard library.
+//! Fields that the user's own texts state for the objects of a scene, without defaults and without the standard
+//! library.
 
 use super::evaluate::evaluator::Evaluator;
 use super::evaluate::value::{Record, Slot, Val};
@@ -17,7 +18,7 @@ pub struct Stated {
     pub span: Span,
     pub kind: &'static str,
     pub field: &'static str,
-    /// Whether an edit states it, as `--set` and the points of a study do.
+    /// Whether an edit states it, such as `--set` or a point of a study.
     pub edited: bool,
 }
 
@@ -28,7 +29,8 @@ impl Stated {
     }
 }
 
-/// What is stated of everything that acts in the main file and of all that it names, in the order of the texts.
+/// Fields stated for every object that acts in the main file, and for all objects that these name, in the order of the
+/// texts.
 pub(super) fn stated(eval: &Evaluator<'_>) -> Vec<Stated> {
     let mut found = Found { sources: &eval.files.sources, stated: BTreeSet::new() };
     for (item, declared) in eval.scopes[eval.main].tree.items.iter().enumerate() {
@@ -61,7 +63,7 @@ impl Found<'_> {
         }
         let own = record.kind.fields.iter().any(|known| known.name == field);
         let changed = record.kind.changes().filter(|_| !own && record.kind.changed_field(field).is_some());
-        // what every kind has says where data comes from, and nothing of the scene
+        // fields of every kind give the origin of data and do not affect the scene
         let Some(kind) = changed.or(Some(record.kind).filter(|_| own)) else { return };
         let edited = source.name == EDIT;
         self.stated.insert(Stated { span: slot.span, kind: kind.name, field, edited });

@@ -1,4 +1,5 @@
-//! What an editor asks of a text: its files with their names, and what every object holds in the end, whatever else is wrong.
+//! Information for an editor: the files of a text with their names, and the final fields of every object, also after
+//! mistakes.
 
 use super::evaluate::evaluator::Evaluator;
 use super::evaluate::number::Number;
@@ -14,31 +15,31 @@ use crate::schema::{COMMON, Field, Kind};
 use crate::units::Dimension;
 use std::collections::BTreeMap;
 
-/// The files of a scene, each with what it declares and brings in.
+/// The files of a scene, each with its declarations and its modules.
 pub struct Files {
     pub scopes: Vec<Scope>,
     /// The main file.
     pub main: ScopeId,
-    /// Where every module of the standard library is known.
+    /// The scope in which every module of the standard library is known.
     pub standard: ScopeId,
 }
 
-/// Everything that is known of a text.
+/// All information about a text.
 pub struct Survey {
     pub checked: Checked,
     pub files: Files,
-    /// What was understood of the declarations that the scene reads, those of the standard library too.
+    /// Understood declarations that the scene reads, also of the standard library.
     pub objects: BTreeMap<ItemId, Object>,
 }
 
-/// An object with what it says, inherits or leaves to defaults.
+/// An object with its own, inherited and default fields.
 #[derive(Debug, Clone)]
 pub struct Object {
     pub kind: &'static Kind,
     pub fields: Vec<Held>,
 }
 
-/// A field of an object, and what it holds.
+/// A field of an object, and its content.
 #[derive(Debug, Clone)]
 pub struct Held {
     pub field: &'static Field,
@@ -47,7 +48,7 @@ pub struct Held {
     pub content: Content,
 }
 
-/// What a field holds, as far as it is told apart here.
+/// The content of a field, by kind.
 #[derive(Debug, Clone)]
 pub enum Content {
     Number {
@@ -57,15 +58,15 @@ pub enum Content {
         /// The value in the words of the language.
         text: String,
     },
-    /// An object: its name, and what it holds itself.
+    /// An object: its name and its own fields.
     Object(String, Object),
-    /// Anything else that was understood; it stands at the place of the field.
+    /// Any other understood value, at the place of the field.
     Other,
     /// A hole, or not understood.
     Unknown,
 }
 
-/// Checks a text and tells everything that is known of it.
+/// Checks a text and returns all information about it.
 pub fn survey(name: &str, text: &str, modules: &dyn Modules) -> Survey {
     let eval = Evaluator::new(load(name, text, &[], Part::Whole, modules));
     let (main, standard) = (eval.main, eval.standard);
@@ -109,7 +110,7 @@ fn quantity(number: Number, field: &'static Field) -> Content {
 }
 
 impl Object {
-    /// What a field holds, by its path through objects inside.
+    /// The content of a field, by its path through inner objects.
     pub fn held(&self, path: &[&str]) -> Option<&Held> {
         let (first, rest) = path.split_first()?;
         let held = self.fields.iter().find(|held| held.field.name == *first)?;
@@ -120,7 +121,7 @@ impl Object {
         }
     }
 
-    /// The number that a path holds: the value of one rail, SI.
+    /// The number at a path: the value of one rail, SI.
     pub fn number(&self, path: &[&str]) -> Option<f64> {
         match self.held(path)?.content {
             Content::Number { of_rail, .. } => Some(of_rail),

@@ -1,4 +1,4 @@
-//! What the law tier says of a scene before its grains are placed.
+//! Settlement of a scene by the law tier, before its grains are placed.
 
 use crate::diag::has_errors;
 use crate::execute::{Event, Executor, Listener};
@@ -6,12 +6,12 @@ use crate::lower::Planner;
 use crate::scenario::{Given, Scenario, Tier, Update};
 use std::ops::ControlFlow;
 
-/// Blocks by which the law runs: six passages for five hundred axles, as long as only the shape of the answer counts.
+/// Blocks for the law: six passages for five hundred axles, because only the shape of the result is used.
 const FIRST: u64 = 4;
 const RATIO: f64 = 3.0;
 
-/// Settlement of every seat after all axles by the law of a scene that asks for `cells` or `zone`, m; `None` of any other scene, and where the law
-/// cannot run.
+/// Settlement of every seat after all axles by the law of a scene with `cells` or `zone`, m; `None` for any other
+/// scene, and if the law cannot run.
 pub fn settlement(planner: &Planner, scenario: &Scenario) -> Option<Vec<f64>> {
     let grains = &scenario.solve.grains;
     if !matches!(*grains.tier, Tier::Cells | Tier::Zone) {

@@ -12,23 +12,24 @@ use crate::lower::{Lowered, Origins, Planner};
 use crate::scenario::{Scenario, Study};
 use sha2::{Digest, Sha256};
 
-/// What became of a text: every diagnostic, and the scene and its plan where they could be made.
+/// The result of compiling a text: every diagnostic, and the scene and its plan if they could be made.
 #[derive(Debug)]
 pub struct Compiled {
     pub sources: Sources,
-    /// Down the file; errors among them stop a run.
+    /// In the order of the file; an error stops a run.
     pub diagnostics: Vec<Diagnostic>,
     pub scenario: Option<Scenario>,
-    /// `None` where nothing acts on the track. One that this version cannot run is there to be looked at, see [`Graph::runs`].
+    /// `None` if nothing acts on the track. A plan that this version cannot run is given for inspection, see
+    /// [`Graph::runs`].
     pub graph: Option<Graph>,
-    /// Where the scene says the parameters of the graph.
+    /// Places in the scene of the parameters of the graph.
     pub origins: Origins,
     /// The studies of the file that have no mistake of their own.
     pub studies: Vec<Study>,
 }
 
 impl Compiled {
-    /// A text of which nothing could be made.
+    /// A text that could not be compiled.
     pub fn unread(mistake: Diagnostic) -> Compiled {
         Compiled {
             sources: Sources::default(),
@@ -40,7 +41,7 @@ impl Compiled {
         }
     }
 
-    /// The same for a run: what a scene needs and this version cannot do is an error there, and a warning to a check.
+    /// The same for a run: a part that this version cannot do is an error for a run, and a warning for a check.
     pub fn to_run(mut self) -> Compiled {
         for diagnostic in self.diagnostics.iter_mut().filter(|d| d.code == Code::E0604) {
             diagnostic.severity = Severity::Error;
@@ -49,20 +50,21 @@ impl Compiled {
         self
     }
 
-    /// The plan, where this version can run it.
+    /// The plan, if this version can run it.
     pub fn runnable(&self) -> Option<&Graph> {
         self.graph.as_ref().filter(|graph| graph.runs)
     }
 }
 
-/// Checks a text that a person calls `name`, lowers it and applies the physics rules. It also computes the state of rest with which a run
-/// begins, so that a track that nothing holds is told here. A check takes some milliseconds; a check of adaptive blocks or of clumps
-/// takes some tenths of a second, and one of `substructure = zone` as long as six passages of a train.
+/// Checks a text, lowers it and applies the physics rules; `name` is the name that messages show. It also computes the
+/// state of rest at the start of a run, so that a track without support is reported here. A check takes some
+/// milliseconds. A check of adaptive blocks or of clumps takes some tenths of a second; a check of
+/// `substructure = zone` takes as long as six passages of a train.
 pub fn compile(name: &str, text: &str, modules: &dyn Modules, overrides: &[Override]) -> Compiled {
     compile_with(&Planner::default(), name, text, modules, overrides)
 }
 
-/// The same with a planner of one's own.
+/// The same with another planner.
 pub fn compile_with(
     planner: &Planner,
     name: &str,
@@ -75,18 +77,18 @@ pub fn compile_with(
     let (mut graph, mut origins) = (None, Origins::default());
     if let Some(scenario) = &checked.scenario {
         let lowered: Lowered = planner.lower_with(scenario, by_law::settlement(planner, scenario).as_deref());
-        // beside errors of the text, only further errors are worth a word
+        // beside errors of the text, only further errors are reported
         diagnostics.extend(lowered.diagnostics.into_iter().filter(|d| checked.sound || d.is_error()));
         graph = lowered.graph.filter(|_| checked.sound);
         origins = lowered.origins;
         diagnostics.extend(graph.iter().flat_map(|graph| lint(scenario, graph)));
-        // what the run would fail by before the first axle
+        // mistakes that would stop the run before the first axle
         let runs = graph.iter().filter(|graph| graph.runs && !diag::has_errors(&diagnostics));
         let failure = runs.filter_map(|graph| Some(diagnose(&at_rest(graph).err()?, graph, &origins))).next();
         diagnostics.extend(failure);
         if checked.sound {
             let of_plan = |graph| [check::readers(scenario), lowered.readers, lint::readers(graph)].concat();
-            // a plan that this version cannot run is no measure of what a line is for
+            // a plan that this version cannot run does not show the effect of a line
             let runs = graph.as_ref().filter(|graph| graph.runs);
             let readers = runs.map(of_plan).unwrap_or_default();
             diagnostics.extend(unused::told(&checked.stated, &readers, &checked.sources));

@@ -1,7 +1,8 @@
-//! A field that does nothing says so: what the user's texts state is held against what the parts of the program read.
+//! Reports fields without effect: compares the fields that the user's texts state with the fields that the parts of the
+//! program read.
 //!
-//! A part of the scene (a rail, a granular material, a vehicle) is a data sheet, which other plans of the same file read, and which is
-//! true in each. What it states is told only where an edit asks for a change of it, or where no plan of this version reads it.
+//! A part of the scene (a rail, a granular material, a vehicle) is a data sheet that other plans of the same file read.
+//! Its fields are reported only if an edit changes them, or if no plan of this version reads them.
 
 use crate::check::Stated;
 use crate::diag::{Code, Diagnostic, Edit, Fix, Sources, Span, and_list};
@@ -12,11 +13,11 @@ use crate::schema::{self, Field, Need, Reader, Role};
 enum Why {
     /// No run of this version reads it.
     Unread,
-    /// It acts elsewhere.
+    /// It acts in other plans.
     ActsWhere(Vec<&'static str>),
 }
 
-/// One warning for each reason, with every field of which it holds. Without readers only those are told that nobody reads.
+/// One warning for each reason, with all its fields. Without readers only fields that no part reads are reported.
 pub(super) fn told(stated: &[Stated], readers: &[Reader], sources: &Sources) -> Vec<Diagnostic> {
     let mut reasons: Vec<(Why, Vec<Stated>)> = Vec::new();
     for one in stated {
@@ -34,12 +35,13 @@ pub(super) fn told(stated: &[Stated], readers: &[Reader], sources: &Sources) -> 
     reasons.into_iter().map(with_fix).collect()
 }
 
-/// Why a field does nothing in the plan of these readers; `None` where it does something, or where its word is not worth telling.
+/// The reason why a field has no effect in the plan of these readers; `None` if it has an effect, or if it is not
+/// reported.
 fn why(stated: &Stated, readers: &[Reader]) -> Option<Why> {
     let kind = schema::kind(stated.kind)?;
     let field: &Field = kind.field(stated.field)?;
     if field.unread {
-        // what an object cannot be without is not the choice of whoever writes it
+        // a required field is not the writer's choice
         return (field.need != Need::Required || stated.edited).then_some(Why::Unread);
     }
     if matches!(kind.role, Role::Part | Role::Nested) && !stated.edited {
@@ -55,11 +57,11 @@ fn why(stated: &Stated, readers: &[Reader]) -> Option<Why> {
             acts_where.push(reader.reads.acts_where);
         }
     }
-    // what no plan reads, checking or the drawing does
+    // fields that no plan reads are read by the check or the drawing
     (!acts_where.is_empty()).then_some(Why::ActsWhere(acts_where))
 }
 
-/// The edit that takes a field out of the text, with its line where nothing else stands on it.
+/// The edit that removes a field from the text, with its line if nothing else is on it.
 fn without(field: &Stated, sources: &Sources) -> Option<Edit> {
     let (file, end) = (field.span.file, field.span.end as usize);
     let text = &sources.get(file).text;
@@ -74,7 +76,7 @@ fn without(field: &Stated, sources: &Sources) -> Option<Edit> {
     } else if rest.trim_start().starts_with(',') {
         Span::new(file, start, text.len() - behind.len())
     } else {
-        // the last of several: the comma before it goes too
+        // the last of several fields: the comma before it is removed too
         let kept = text[..start].trim_end().trim_end_matches(',').trim_end().len();
         Span::new(file, kept.max(line), end)
     };
@@ -91,7 +93,7 @@ fn warning(why: &Why, fields: &[Stated]) -> Diagnostic {
     let several = names.len() > 1;
     let names = and_list(&names);
     let (message, label) = match why {
-        Why::Unread => (format!("no run of this version reads {names} yet"), "read by nothing"),
+        Why::Unread => (format!("no run of this version reads {names} yet"), "not used"),
         Why::ActsWhere(places) => {
             let act = if several { "act" } else { "acts" };
             (format!("{names} {act} only {}", places.join(", or ")), "not used by this plan")

@@ -16,12 +16,12 @@ macro_rules! codes {
                 match self { $(Code::$code => stringify!($code)),* }
             }
 
-            /// What is wrong, in a few words.
+            /// The mistake in a few words.
             pub fn title(self) -> &'static str {
                 match self { $(Code::$code => $title),* }
             }
 
-            /// What the code weighs where nobody says otherwise.
+            /// The default severity of the code.
             pub fn severity(self) -> Severity {
                 match self { $(Code::$code => Severity::$severity),* }
             }
@@ -43,7 +43,7 @@ codes! {
     E0106 Error "text without its closing quote"
     E0201 Error "unknown name"
     E0202 Error "name declared twice"
-    E0203 Error "names that need each other"
+    E0203 Error "names that depend on each other"
     E0204 Error "module not found"
     E0205 Error "base of another kind"
     E0206 Error "modules that use each other"
@@ -67,16 +67,16 @@ codes! {
     E0412 Warning "declaration that nothing uses"
     E0414 Error "grading that is no curve"
     E0415 Error "cut that leaves no grading"
-    E0416 Warning "grading of which little is modelled"
+    E0416 Warning "grading with a small modelled share"
     E0420 Error "bed narrower than its sleepers"
-    E0421 Error "rest of a depth that nobody knows"
+    E0421 Error "rest of an unknown depth"
     E0422 Note "response that the tier does not give"
     E0419 Error "grains without a modulus under a sleeper"
     E0417 Error "stretch without an effect"
     E0427 Error "tamping without an effect"
     E0428 Error "profiles that do not combine"
     E0418 Error "stretch that the track under it cannot have"
-    E0423 Error "rest of a depth that does not work out"
+    E0423 Error "rest of a depth that cannot be computed"
     E0424 Error "layers of another depth than those under them"
     E0425 Error "approach slab away from its structure"
     E0426 Error "approach slab outside its layers"
@@ -90,7 +90,7 @@ codes! {
     E0507 Error "profile whose places do not follow each other"
     E0508 Error "data file that cannot be read"
     E0509 Error "data file with other columns"
-    E0510 Error "row of a data file that is not data"
+    E0510 Error "row of a data file that cannot be used"
     E0511 Error "layer too thin for its grains"
     E0512 Error "stretches that set the same thing"
     E0514 Error "seats on the wrong side of their transition"
@@ -110,8 +110,8 @@ codes! {
     E0619 Error "states that a rig does not write"
     E0701 Error "study of a scene without trains"
     E0702 Error "axle count between two exchanges"
-    E0703 Error "wheel force that has run away"
-    E0704 Error "variation of what is not there"
+    E0703 Error "wheel force that grows without limit"
+    E0704 Error "variation of an unknown field"
     E0705 Error "illegal point of a study"
     E0706 Error "sampling that does not fit its values"
     E0707 Error "value varied twice"
@@ -144,41 +144,41 @@ codes! {
     L1007 Warning "sleeper passing near a vehicle resonance"
     L1008 Warning "sleepers below the threshold of their law"
     L1009 Warning "layer of few grains"
-    L1010 Warning "value of the library that nobody has checked"
+    L1010 Warning "unchecked value of the library"
     L1011 Warning "irregularity too sharp for a wheel"
     L1012 Warning "sleeper passing near the resonance of a wheel on the track"
     L1013 Warning "wheel that loses its load over the level of the rail"
     L1014 Warning "rail foot stressed beyond the usual limit"
     L1015 Warning "sleeper pressure beyond the usual limit"
-    L1016 Warning "support stiffness that has not been measured"
-    L1017 Warning "car body that bounces as none does"
+    L1016 Warning "support stiffness outside the measured range"
+    L1017 Warning "car body with an unusual bounce frequency"
     L1018 Warning "bed of few grains between its walls"
     L1019 Warning "sleeper on few grains"
-    L1020 Warning "step of grains beyond what their contacts bear"
+    L1020 Warning "step of grains above its stability limit"
     L1021 Warning "grains that overlap too much under their load"
     L1022 Warning "run above its budget"
-    L1023 Warning "damper that lets nothing swing"
+    L1023 Warning "damper above critical damping"
     L1024 Warning "volume of few grains"
-    L1025 Warning "histories sampled at another rate than they move"
+    L1025 Warning "histories with too few or too many samples"
     L1026 Warning "waves of the level too short for steps or elements"
-    L1027 Warning "wagon faster than wagons run"
-    L1028 Warning "ballast thicker than tracks have it"
+    L1027 Warning "wagon faster than real wagons"
+    L1028 Warning "ballast thicker than on real tracks"
     L1029 Warning "ballast below finer layers"
     L1030 Warning "void that no wheel closes"
     L1031 Warning "level of the rail beyond its alert limit"
     L1032 Warning "stretch that softens towards the stiffer side"
-    L1033 Warning "softer side that is the stiffer one"
+    L1033 Warning "declared softer side that is stiffer"
     L1034 Warning "ballast on a structure under a law of force"
     L1035 Warning "speed near the speed of surface waves"
 }
 
 impl Code {
-    /// The code that a person typed, in any case.
+    /// The code for a typed text, in upper or lower case.
     pub fn parse(text: &str) -> Option<Code> {
         Code::ALL.iter().copied().find(|c| c.as_str().eq_ignore_ascii_case(text))
     }
 
-    /// The snake_case name under which a scenario allows or denies a physics rule.
+    /// The snake_case name by which a scenario allows or denies a physics rule.
     pub fn rule(self) -> Option<&'static str> {
         Some(match self {
             Code::L1001 => "stiffness_jump",

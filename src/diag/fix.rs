@@ -1,17 +1,17 @@
-//! Help that is an edit: what an editor, or another program, can do to the text by itself.
+//! Help as an edit: a change of the text that an editor or another program can apply.
 
 use super::{Diagnostic, Span};
 
-/// An edit that takes a mistake away.
+/// An edit that corrects a mistake.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fix {
-    /// What it does, for a menu: ``write `stiffness` ``.
+    /// Its title for a menu: ``write `stiffness` ``.
     pub title: String,
     /// Parts of the text that are replaced; they do not overlap.
     pub edits: Vec<Edit>,
 }
 
-/// A part of a text, and what takes its place.
+/// A part of a text, and its replacement.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Edit {
     pub span: Span,
@@ -19,7 +19,7 @@ pub struct Edit {
 }
 
 impl Fix {
-    /// Puts a text in the place of a span.
+    /// Replaces a span by a text.
     pub fn replace(span: Span, text: impl Into<String>) -> Fix {
         let text = text.into();
         let title = if text.is_empty() { "take it out".into() } else { format!("write `{}`", one_line(&text)) };
@@ -31,7 +31,7 @@ impl Fix {
         Fix { title: title.into(), ..self }
     }
 
-    /// What a text is after the edits of the fix in one of its files.
+    /// The text of one file after the edits of the fix.
     pub fn applied(&self, file: super::FileId, text: &str) -> String {
         let mut edits: Vec<&Edit> = self.edits.iter().filter(|edit| edit.span.file == file).collect();
         edits.sort_by_key(|edit| std::cmp::Reverse(edit.span));
@@ -48,19 +48,19 @@ fn one_line(text: &str) -> String {
 }
 
 impl Diagnostic {
-    /// Adds an edit that takes the mistake away.
+    /// Adds an edit that corrects the mistake.
     pub fn fix(mut self, fix: Fix) -> Self {
         self.fixes.push(fix);
         self
     }
 
-    /// Adds an edit where there is one.
+    /// Adds an edit if there is one.
     pub fn maybe_fix(mut self, fix: Option<Fix>) -> Self {
         self.fixes.extend(fix);
         self
     }
 
-    /// Offers to write a text in the place of a value, where the text says it.
+    /// Offers to replace a value by a text, if the value has a place in the text.
     pub fn rewrite(self, value: Option<Span>, text: impl Into<String>) -> Self {
         match value {
             Some(span) => self.fix(Fix::replace(span, text)),
@@ -68,18 +68,18 @@ impl Diagnostic {
         }
     }
 
-    /// Says that a text is to be written in the place of a span, and offers to do it.
+    /// Tells to write a text instead of a span, and offers the edit.
     pub fn write(self, span: Span, text: impl Into<String>) -> Self {
         let text = text.into();
         self.help(format!("write `{text}`")).fix(Fix::replace(span, text))
     }
 
-    /// Asks whether a text was meant in the place of a span, and offers to write it.
+    /// Asks whether a text was meant instead of a span, and offers the edit.
     pub fn meant(self, span: Span, text: &str) -> Self {
         self.help(format!("did you mean `{text}`?")).fix(Fix::replace(span, text))
     }
 
-    /// The same where there is such a text.
+    /// The same if there is such a text.
     pub fn maybe_meant(self, span: Span, text: Option<&str>) -> Self {
         match text {
             Some(text) => self.meant(span, text),
@@ -88,7 +88,7 @@ impl Diagnostic {
     }
 }
 
-/// What is said to do, with the texts that can be written in the place of the mistake.
+/// A help message, with the texts that can replace the mistake.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Help {
     pub said: String,
@@ -96,7 +96,7 @@ pub struct Help {
 }
 
 impl Help {
-    /// Words that are no edit.
+    /// A help message without an edit.
     pub fn say(said: impl Into<String>) -> Help {
         Help { said: said.into(), writes: Vec::new() }
     }
@@ -131,13 +131,13 @@ impl Help {
 }
 
 impl Diagnostic {
-    /// Says what to do about the text of a span.
+    /// Adds help for the text of a span.
     pub fn advise(mut self, span: Span, help: Help) -> Self {
         self.fixes.extend(help.writes.into_iter().map(|text| Fix::replace(span, text)));
         self.help(help.said)
     }
 
-    /// The same where there is something to say.
+    /// The same if there is help.
     pub fn maybe_advise(self, span: Span, help: Option<Help>) -> Self {
         match help {
             Some(help) => self.advise(span, help),

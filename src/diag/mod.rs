@@ -1,7 +1,7 @@
-//! What is wrong, where, and the way out: the one type in which every stage reports a mistake.
+//! Diagnostics: every stage reports a mistake, its place and its help in this type.
 //!
-//! A stage returns its result together with all the [`Diagnostic`]s it has, never the first one only.
-//! Rendering for people and for programs is separate ([`render`]), so that the stages know no terminal.
+//! A stage returns its result together with all its [`Diagnostic`]s, not only the first.
+//! Rendering for people and for programs is separate ([`render`]), so that the stages do not depend on a terminal.
 
 mod code;
 mod fix;
@@ -13,7 +13,7 @@ pub use code::Code;
 pub use fix::{Edit, Fix, Help};
 pub use source::{FileId, Position, Source, Sources, Span};
 
-/// How much a diagnostic weighs: only errors stop a run.
+/// The severity of a diagnostic: only errors stop a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     Note,
@@ -31,30 +31,30 @@ impl Severity {
     }
 }
 
-/// A place in the source and what is to be said about it.
+/// A place in the source with a short text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Label {
     pub span: Span,
     pub text: String,
 }
 
-/// One mistake: a code that `trackbed explain` knows, the places that show it, and a way out.
+/// One mistake: a code for `trackbed explain`, the places that show it, and help.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
     pub code: Code,
     pub severity: Severity,
     /// Lower case, no full stop, source text in backticks.
     pub message: String,
-    /// The first label is where the mistake stands; the others are its second parties. Empty where no file is to blame.
+    /// The first label is the place of the mistake; the others are related places. Empty if no file has the mistake.
     pub labels: Vec<Label>,
-    /// What to write instead, ready to paste where possible.
+    /// Text to write instead, ready to paste if possible.
     pub help: Option<String>,
-    /// The same as edits of the text, each of which takes the mistake away.
+    /// The same as edits of the text; each edit alone corrects the mistake.
     pub fixes: Vec<Fix>,
 }
 
 impl Diagnostic {
-    /// A diagnostic of the code's usual severity.
+    /// A diagnostic with the code's usual severity.
     pub fn new(code: Code, message: impl Into<String>) -> Self {
         let (labels, fixes) = (Vec::new(), Vec::new());
         Diagnostic { code, severity: code.severity(), message: message.into(), labels, help: None, fixes }
@@ -71,7 +71,7 @@ impl Diagnostic {
         self
     }
 
-    /// Adds the help where there is one.
+    /// Adds the help if there is one.
     pub fn maybe_help(mut self, help: Option<String>) -> Self {
         self.help = help.or(self.help);
         self
@@ -87,13 +87,13 @@ impl Diagnostic {
     }
 }
 
-/// Orders diagnostics by file and place and drops exact repetitions, so that a reader goes down the file once.
+/// Orders diagnostics by file and place and drops exact repetitions.
 pub fn sort(diagnostics: &mut Vec<Diagnostic>) {
     diagnostics.sort_by_key(|d| (d.labels.first().map(|l| l.span), d.code, d.message.clone()));
     diagnostics.dedup();
 }
 
-/// Whether any of them stops a run.
+/// Whether any diagnostic stops a run.
 pub fn has_errors(diagnostics: &[Diagnostic]) -> bool {
     diagnostics.iter().any(Diagnostic::is_error)
 }

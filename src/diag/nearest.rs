@@ -1,7 +1,7 @@
-//! The known word that a misspelt one most likely means: the same in another case, its plural, singular or
-//! abbreviation, or else one that few slips of the hand away.
+//! The known word that a misspelt word most likely means: the same word in another case, its plural, singular or
+//! abbreviation, or else a word with few different letters.
 
-/// The candidate nearest to `word`, if one is near enough; among equals the first in alphabetical order.
+/// The candidate nearest to `word`, if one is near enough; of equally near candidates the first in alphabetical order.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase();
     candidates
@@ -12,7 +12,8 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, candidate)| candidate)
 }
 
-/// How far a candidate is, both in lower case: 0 the same, 1 a plural, 2 cut off, and above that 2 and the slips.
+/// Distance of a candidate, both in lower case: 0 for the same word, 1 for a plural, 2 for an abbreviation, else 2 plus
+/// the slips.
 fn rank(word: &str, candidate: &str) -> Option<usize> {
     if word == candidate {
         return Some(0);
@@ -30,7 +31,7 @@ fn rank(word: &str, candidate: &str) -> Option<usize> {
         2..=4 => 1,
         _ => (length / 4 + 1).min(4),
     };
-    // A length that alone is too far off needs no table.
+    // If the lengths differ too much, no table is needed.
     if length.abs_diff(candidate.chars().count()) > bound {
         return None;
     }

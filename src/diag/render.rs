@@ -1,7 +1,7 @@
 //! Diagnostics for people, drawn over the source text, and for programs, as JSON.
 //!
-//! The only place that knows miette. Spans are clamped and texts cleaned before miette sees them, so that no span
-//! and no text, however odd, can upset a report; lines and columns are those of [`Sources::position`].
+//! Only this module uses miette. Spans are clamped and texts cleaned before miette gets them, so that unusual spans and
+//! texts cannot break a report. Lines and columns come from [`Sources::position`].
 
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents};
 use miette::{SourceCode, SourceSpan, SpanContents};
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::{Diagnostic, Edit, FileId, Fix, Label, Severity, Sources, Span};
 
-/// A report for a terminal of that width, with a footer that counts; empty where nothing is to be said.
+/// A report for a terminal of that width, with counts at the end; empty without diagnostics.
 pub fn human(diagnostics: &[Diagnostic], sources: &Sources, colour: bool, width: usize) -> String {
     let theme = if colour { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
     let handler = GraphicalReportHandler::new_themed(theme)
@@ -46,7 +46,7 @@ fn footer(diagnostics: &[Diagnostic]) -> String {
     if counted.is_empty() { String::new() } else { format!("{}\n", counted.join(", ")) }
 }
 
-/// All that matters on two lines, should the drawing fail.
+/// The diagnostic on two lines, if the drawing fails.
 fn plain(diagnostic: &Diagnostic, sources: &Sources) -> String {
     let place = diagnostic.labels.first().and_then(|label| {
         let start = position(sources, label.span.file, label.span.start)?;
@@ -56,7 +56,7 @@ fn plain(diagnostic: &Diagnostic, sources: &Sources) -> String {
     format!("{severity} {code}: {}\n{}", diagnostic.message, place.unwrap_or_default())
 }
 
-/// The diagnostics as data: lines and columns count from 1, what is unknown is null.
+/// The diagnostics as data: lines and columns count from 1, unknown values are null.
 pub fn json(diagnostics: &[Diagnostic], sources: &Sources) -> Value {
     json!({ "diagnostics": entries(diagnostics, sources) })
 }
@@ -86,7 +86,7 @@ pub fn entries(diagnostics: &[Diagnostic], sources: &Sources) -> Vec<Value> {
         .collect()
 }
 
-/// An edit as data: its parts of the files in bytes from 0, the end excluded, and what takes their place.
+/// An edit as data: spans of the files in bytes from 0, the end excluded, and their replacements.
 fn fix_json(fix: &Fix, sources: &Sources) -> Value {
     let edit = |edit: &Edit| {
         let name = sources.iter().nth(edit.span.file.0 as usize).map(|(_, source)| source.name.as_str());
@@ -112,7 +112,7 @@ fn floor(text: &str, offset: usize) -> usize {
     offset
 }
 
-/// A source text as miette may see it.
+/// A source text for miette.
 struct Excerpt<'a> {
     name: &'a str,
     /// The source, byte for byte, but with blanks for control characters.
@@ -122,9 +122,9 @@ struct Excerpt<'a> {
 
 /// Longer lines are shown in part.
 const LONG_LINE: usize = 400;
-/// Lines between two excerpts that are drawn rather than left out.
+/// Largest number of lines between two excerpts that are drawn and not left out.
 const NEAR: usize = 4;
-/// What is shown of a long line on either side of a label.
+/// Length of the shown part of a long line on either side of a label.
 const MARGIN: usize = 60;
 
 impl<'a> Excerpt<'a> {
@@ -148,7 +148,7 @@ impl<'a> Excerpt<'a> {
         self.line_starts.get(line + 1).map_or(self.text.len(), |next| next - 1)
     }
 
-    /// Inside the text, on characters, and on one line.
+    /// Clamps a span to the text, to whole characters, and to one line.
     fn clamp(&self, span: Span) -> (usize, usize) {
         let start = floor(&self.text, span.start as usize);
         let end = floor(&self.text, span.end as usize).clamp(start, self.line_end(self.line(start)).max(start));
@@ -169,7 +169,7 @@ impl SourceCode for Excerpt<'_> {
         let to_line = (last + lines_after).min(self.line_starts.len() - 1);
         let mut from = self.line_starts[from_line];
         let mut to = self.line_end(to_line);
-        // Neighbours that are too long are left out, and so are the far ends of the lines themselves.
+        // Neighbouring lines that are too long are left out, and also the far ends of the lines themselves.
         if start - from > LONG_LINE {
             from = self.line_starts[first].max(floor(&self.text, start.saturating_sub(MARGIN)));
         }
@@ -177,9 +177,10 @@ impl SourceCode for Excerpt<'_> {
             to = self.line_end(last).min(floor(&self.text, end + MARGIN));
         }
         let column = self.text[self.line_starts[first]..start].chars().count();
-        // miette takes the line of the contents for the gutter and that of the label, read alone, for the header.
+        // miette takes the line number of the contents for the gutter and the line number of the label, read alone, for
+        // the header.
         let (line, column) = if lines_before == 0 && lines_after == 0 { (first, column) } else { (self.line(from), 0) };
-        // excerpts that this brings together are drawn as one
+        // excerpts that meet are drawn as one
         let line_count = to_line + 1 - from_line + NEAR;
         let name = self.name.to_owned();
         let data = &self.text.as_bytes()[from..to];
@@ -187,7 +188,7 @@ impl SourceCode for Excerpt<'_> {
     }
 }
 
-/// One diagnostic as miette wants it.
+/// One diagnostic for miette.
 #[derive(Debug)]
 struct Report<'a> {
     diagnostic: Option<&'a Diagnostic>,
@@ -203,7 +204,7 @@ impl std::fmt::Debug for Excerpt<'_> {
 }
 
 impl<'a> Report<'a> {
-    /// The report itself, then one for each label in another file: miette draws over one text at a time.
+    /// The report itself, then one report for each label in another file: miette draws one text at a time.
     fn all(diagnostic: &'a Diagnostic, excerpts: &'a [Excerpt<'a>]) -> Vec<Self> {
         let excerpt = |file: FileId| excerpts.get(file.0 as usize);
         let labelled = |label: &Label, text: &str, primary: bool| {

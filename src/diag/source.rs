@@ -1,4 +1,4 @@
-//! Source texts, and spans inside them as byte offsets; lines and columns are derived where somebody looks.
+//! Source texts, and spans inside them as byte offsets; lines and columns are computed when they are needed.
 
 use serde::{Deserialize, Serialize};
 
@@ -37,16 +37,16 @@ pub struct Position {
     pub column: usize,
 }
 
-/// One text: what a person calls it, and its content.
+/// One text: its name in messages, and its content.
 #[derive(Debug, Clone)]
 pub struct Source {
     pub name: String,
     pub text: String,
-    /// Part of the standard library rather than written by the user.
+    /// Whether it is part of the standard library.
     pub library: bool,
 }
 
-/// Every text that a scene is made of; the main file comes first.
+/// Every text of a scene; the main file comes first.
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
     files: Vec<Source>,

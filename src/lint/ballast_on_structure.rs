@@ -1,7 +1,8 @@
-//! L1034: ballast lies on both sides of a transition, and the law knows forces alone.
+//! L1034: ballast lies on both sides of a transition, and the law depends on forces alone.
 //!
-//! Where the track is stiffer, a sleeper takes more of the wheel and a law of force settles it more; in the field the softer side
-//! settles more, since its subgrade does (section 1 of the paper). The step then has the wrong sign.
+//! On the stiffer side a sleeper carries more of the wheel load, so a law of force gives it more settlement. In the
+//! field the softer side settles more, because its subgrade settles (section 1 of the paper). The step then has the
+//! wrong sign.
 
 use super::transition_sides::median;
 use super::winkler::Winkler;
@@ -10,7 +11,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
 use crate::scenario::{Scenario, SettlementLaw};
 
-/// A structure is stiffer than the track before it by so much.
+/// Least ratio of the stiffness on a structure to the stiffness before it.
 const STIFFER: f64 = 1.15;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
@@ -20,20 +21,22 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Some((softer, structure)) = structure(scenario, graph) else { return Vec::new() };
     let of_law = |law: &SettlementLaw| {
         let message = format!(
-            "law `{}` counts forces on the ballast and knows no subgrade: on `{structure}`, which is stiffer, sleepers carry more and settle more than on `{softer}`",
+            "law `{}` depends on forces alone and ignores the subgrade: sleepers on the stiffer section `{structure}` \
+             settle more than on `{softer}`",
             law.name
         );
         let diagnostic = Diagnostic::new(Code::L1034, message).help(
-            "give what the subgrade settles as `settlement` of the softer trackform, choose a law of deflection such as \
-             `laws.guerin_1996`, or read the step at the structure as the ballast's part alone",
+            "give the settlement of the subgrade as `settlement` of the softer trackform, or choose a law of \
+             deflection such \
+             as `laws.guerin_1996`; otherwise the step at the structure is the part of the ballast alone",
         );
         pointed(diagnostic, scenario, law, "this law")
     };
     laws(scenario).filter(|law| law.law.knows_forces_alone()).map(of_law).collect()
 }
 
-/// The first transition with ballast on both sides of which one is stiffer: the names of the softer and of the stiffer section. A
-/// settlement that the scene states for the softer side is what its subgrade does.
+/// The first transition with ballast on both sides and a stiffer side: names of the softer and of the stiffer section.
+/// A settlement that the scene states for the softer side is the settlement of its subgrade.
 fn structure<'a>(scenario: &'a Scenario, graph: &Graph) -> Option<(&'a str, &'a str)> {
     let track = &scenario.track;
     let ballasted = |section: usize| track.seats[track.seats_of(section)].iter().all(|seat| seat.is_ballasted());
@@ -48,7 +51,7 @@ fn structure<'a>(scenario: &'a Scenario, graph: &Graph) -> Option<(&'a str, &'a 
     })
 }
 
-/// Median stiffness at rail level of the seats of a section, N/m: it says which sleepers carry more.
+/// Median stiffness at rail level of the seats of a section, N/m: sleepers of the stiffer section carry more.
 fn of_section(scenario: &Scenario, graph: &Graph, section: usize) -> Option<f64> {
     let track = &scenario.track;
     let at_seat = |seat| Some(Winkler::at_seat(track, &graph.supports, seat)?.rail_stiffness());

@@ -1,7 +1,8 @@
 //! L1015: sleepers press harder on the ballast than design rules allow.
 //!
-//! The seat under a wheel takes `Q lambda s / 2` of it, speed amplifies that, the track's weight comes on top, and half the
-//! sleeper's bearing area carries both. 0.5 MPa are usual under concrete sleepers (UIC, unchecked).
+//! The seat under a wheel load Q carries `Q lambda s / 2`. Speed amplifies this load, and the weight of the track is
+//! added. Half of the sleeper's bearing area carries the sum. The usual limit under concrete sleepers is 0.5 MPa (UIC,
+//! unchecked).
 
 use super::dynamic::amplification;
 use super::led;
@@ -31,7 +32,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let diagnostic = Diagnostic::new(
         Code::L1015,
         format!(
-            "sleepers of `{}` press with about {} kPa on the ballast: {} kN on {} m^2 a seat, {} km/h included",
+            "sleepers of `{}` press on the ballast with about {} kPa: {} kN on {} m^2 per seat at {} km/h",
             section.name,
             number((pressure / 1e3).round()),
             number((pressure * area / 1e3).round()),
@@ -40,11 +41,11 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         ),
     )
     .help(format!(
-        "{} kPa are usual at most: larger sleepers, closer sleepers, softer pads or lighter axles",
+        "the usual limit is {} kPa: use larger sleepers, a closer spacing, softer pads or lighter axles",
         LARGEST / 1e3
     ));
     vec![match section.spacing.origin.span() {
-        Some(span) => diagnostic.label(span, "so far apart"),
+        Some(span) => diagnostic.label(span, "spacing of the sleepers"),
         None => diagnostic,
     }]
 }

@@ -1,7 +1,7 @@
-//! L1028: more ballast lies under the sleepers than any track has.
+//! L1028: the ballast under the sleepers is thicker than on any track.
 //!
-//! Railways lay 250 .. 350 mm under the sleeper, up to 500 mm on old lines that were lifted often (UIC 719, unchecked; Ahmadi et al.
-//! 2026 have 300 mm). A thickness beyond that is a slip of its unit, or sub-ballast and soil are missing below.
+//! Railways lay 250 .. 350 mm under the sleeper, up to 500 mm on old lines that were lifted often (UIC 719, unchecked;
+//! Ahmadi et al. 2026 have 300 mm). A larger thickness has a wrong unit, or includes the sub-ballast and the soil.
 
 use super::strata::{grounds, is_ballast};
 use crate::diag::{Code, Diagnostic};
@@ -28,8 +28,9 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             layer.name,
             ground.section
         );
-        let diagnostic = Diagnostic::new(Code::L1028, message)
-            .help("250 .. 350 mm are usual and 500 mm the most: write such as `300 mm`, and what lies below as layers of its own");
+        let diagnostic = Diagnostic::new(Code::L1028, message).help(
+            "250 .. 350 mm is usual, 500 mm is the most: write for example `300 mm`, and give deeper layers separately",
+        );
         let diagnostic = match layer.thickness.origin().span() {
             Some(span) => diagnostic.label(span, "this thickness"),
             None => diagnostic,

@@ -1,6 +1,6 @@
 //! L1008: under a law with a threshold, no sleeper carries enough to settle.
 //!
-//! The seat load is the static one of a beam on a Winkler foundation; what the passage adds to it is not known before a run.
+//! The seat load is the static load of a beam on a Winkler foundation; the dynamic part is not known before a run.
 
 use super::led;
 use super::winkler::seat_loads;
@@ -25,15 +25,16 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             let diagnostic = Diagnostic::new(
                 Code::L1008,
                 format!(
-                    "law `{}` settles nothing below {} kN a seat, wheels of {} kN at rest give at most about {} kN",
+                    "law `{}` gives no settlement below {} kN per seat, but wheels of {} kN at rest give at most \
+                     about {} kN",
                     law.name,
                     kilonewtons(threshold),
                     kilonewtons(most.wheel),
                     kilonewtons(most.peak.force)
                 ),
             )
-            .help("give the law thresholds that were found for such loads, or choose a law without one");
-            pointed(diagnostic, scenario, law, "its threshold is out of reach")
+            .help("give the law thresholds calibrated for these loads, or choose a law without a threshold");
+            pointed(diagnostic, scenario, law, "its threshold is above every seat load")
         })
         .collect()
 }

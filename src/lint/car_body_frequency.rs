@@ -1,8 +1,8 @@
 //! L1017: a car body bounces at a frequency that no vehicle has.
 //!
-//! On primary and secondary springs in series, `f = sqrt(2 k / m) / 2 pi` with `1/k = 1/k2 + 1/(2 k1)` of a bogie. Freight wagons
-//! bounce at 1.5 .. 4 Hz, coaches at 0.7 .. 1.5 Hz. A value of one wheel that was meant of a wheelset, or a mass of a vehicle
-//! that was meant of a bogie, shows here.
+//! On primary and secondary springs in series, `f = sqrt(2 k / m) / 2 pi` with `1/k = 1/k2 + 1/(2 k1)` of a bogie.
+//! Freight wagons bounce at 1.5 .. 4 Hz, coaches at 0.7 .. 1.5 Hz. The rule finds a value per wheel that was meant per
+//! wheelset, and a mass of a vehicle that was meant per bogie.
 
 use super::led;
 use crate::diag::{Code, Diagnostic};
@@ -33,7 +33,8 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             ),
         )
         .help(
-            "wagons bounce at 1.5 .. 4 Hz, coaches at 0.7 .. 1.5 Hz: is each value of a wheel, a wheelset or a bogie?",
+            "wagons bounce at 1.5 .. 4 Hz, coaches at 0.7 .. 1.5 Hz: is each value per wheel, per wheelset or per \
+             bogie?",
         );
         let diagnostic = match vehicle.secondary_stiffness.origin.span() {
             Some(span) => diagnostic.label(span, "these springs"),

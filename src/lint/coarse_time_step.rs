@@ -1,8 +1,8 @@
-//! L1005: the time step does not resolve what is fast: the wheel on its contact spring, a sleeper between pad and support, the
-//! passage from sleeper to sleeper.
+//! L1005: the time step does not resolve the fastest motion: the wheel on its contact spring, a sleeper between pad and
+//! support, or the passage from sleeper to sleeper.
 //!
-//! f = sqrt(k / m) / 2 pi, twenty steps a period. Of the contact k = 1.5 C^(2/3) F^(1/3) at the static wheel load, of a
-//! sleeper the sum of pad and support; sleepers pass at f = v / spacing.
+//! f = sqrt(k / m) / 2 pi, twenty steps per period. For the contact k = 1.5 C^(2/3) F^(1/3) at the static wheel load;
+//! for a sleeper k is the sum of pad and support. Sleepers pass at f = v / spacing.
 
 use super::{Led, led};
 use crate::diag::{Code, Diagnostic};
@@ -29,7 +29,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let diagnostic = Diagnostic::new(
         Code::L1005,
         format!(
-            "a step of {} ms leaves {} steps to a period of {what}, {} Hz",
+            "a time step of {} ms gives {} steps per period of {what} ({} Hz), which is too few",
             number(step * 1e3),
             number((1.0 / (step * frequency)).round()),
             number(frequency.round())
@@ -41,7 +41,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         format!("{} s", number(rounded_down(needed))),
     );
     vec![match scenario.solve.time_step.span() {
-        Some(span) => diagnostic.label(span, "coarse"),
+        Some(span) => diagnostic.label(span, "too coarse"),
         None => diagnostic,
     }]
 }

@@ -1,4 +1,4 @@
-//! L1002: the train comes near the speed of bending waves in the track, (4 k EI / m^2)^(1/4).
+//! L1002: the train is nearly as fast as bending waves in the track, (4 k EI / m^2)^(1/4).
 
 use super::led;
 use super::winkler::Winkler;
@@ -7,7 +7,7 @@ use crate::graph::Graph;
 use crate::scenario::Scenario;
 use crate::units::number;
 
-/// Above this share of the critical speed the static picture of the track fails.
+/// Above this share of the critical speed a static model of the track fails.
 const LARGEST_SHARE: f64 = 0.6;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
@@ -23,14 +23,14 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let diagnostic = Diagnostic::new(
         Code::L1002,
         format!(
-            "{} km/h are {} % of the critical speed of section `{}`, {} km/h",
+            "the speed of {} km/h is {} % of the critical speed of section `{}`, {} km/h",
             number((*speed * 3.6).round()),
             number((100.0 * *speed / critical).round()),
             track.sections[section].name,
             number((critical * 3.6).round())
         ),
     )
-    .help("the waves of the support itself are not in this model: it errs to the safe side no longer");
+    .help("the model has no waves in the ground: near this speed its results are not on the safe side");
     vec![match speed.origin.span() {
         Some(span) => diagnostic.label(span, "near the critical speed"),
         None => diagnostic,

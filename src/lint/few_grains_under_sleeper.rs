@@ -1,7 +1,7 @@
-//! L1019: a sleeper stands on so few grains that its force is that of single contacts.
+//! L1019: a sleeper stands on so few grains that single contacts determine its force.
 //!
-//! Width of the sleeper's base over the median grain d50 of the layer under it. Below three grains a packing decides what the sleeper
-//! feels, and further packings feel something else.
+//! Ratio of the width of the sleeper's base to the median grain d50 of the layer under it. Below three the force on the
+//! sleeper depends on the packing: another packing gives another force.
 
 use super::grains::{beds, mm};
 use crate::diag::{Code, Diagnostic};
@@ -26,7 +26,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         let diagnostic = Diagnostic::new(
             Code::L1019,
             format!(
-                "sleepers of `{}` are {} mm wide, {} median grains of `{}`, d50 = {} mm",
+                "sleepers of `{}` are {} mm wide, only {} median grains of `{}`, d50 = {} mm",
                 bed.section.name,
                 mm(width),
                 number((width / median * 10.0).round() / 10.0),
@@ -34,7 +34,9 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
                 mm(median)
             ),
         )
-        .help("the force under one sleeper hangs on the packing: finer ballast, or `repeats` for a band of confidence");
+        .help(
+            "the force under one sleeper depends on the packing: use finer ballast, or `repeats` for a confidence band",
+        );
         found.push(match bed.granular.density.origin.span() {
             Some(span) => diagnostic.label(span, format!("grains of `{}`", bed.layer.name)),
             None => diagnostic,

@@ -1,7 +1,8 @@
-//! L1021: grains overlap so far under their load that they are no hard grains any more.
+//! L1021: grains overlap so much under their load that they no longer act as hard grains.
 //!
-//! The mean contact force of grains of the median size is `F = pi d^2 p / (Z phi)`, their approach F / k (or Hertz's), and that over
-//! the radius d / 2 is the overlap. Above a hundredth the bed is softer and denser than one of stone.
+//! The mean contact force of grains of the median size is `F = pi d^2 p / (Z phi)`. Their approach is F / k (or
+//! Hertz's); the overlap is the approach over the radius d / 2. Above a hundredth the bed is softer and denser than a
+//! bed of stone.
 
 use super::grains::{approach, beds, contact_force, mm};
 use crate::diag::{Code, Diagnostic};
@@ -25,7 +26,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         let diagnostic = Diagnostic::new(
             Code::L1021,
             format!(
-                "grains of `{}` overlap by about {} % of their radius: {} N a contact under {} kPa on grains of {} mm",
+                "grains of `{}` overlap by about {} % of their radius: {} N per contact at {} kPa for grains of {} mm",
                 bed.layer.name,
                 number((share * 1e3).round() / 10.0),
                 number(force.round()),
@@ -45,7 +46,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         };
         let diagnostic = diagnostic.help(help);
         let diagnostic = match origin.span() {
-            Some(span) => diagnostic.label(span, "soft for this load"),
+            Some(span) => diagnostic.label(span, "too soft for this load"),
             None => diagnostic,
         };
         if !found.contains(&diagnostic) {

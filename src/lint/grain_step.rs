@@ -1,9 +1,9 @@
-//! L1020: the step of grains is longer than the contacts of the smallest grain bear.
+//! L1020: the step of grains is longer than the stability limit of the smallest grain.
 //!
-//! A grain of mass m among larger ones, held by Z contacts of stiffness k and tangential ratio r, swings with `w^2 = K / m`,
-//! `K = Z k (1 + 2 r) / 3`. A leapfrog with dashpots of ratio beta and local damping alpha bears
-//! `dt = (2 / w) (sqrt(1 + xi^2) - xi) / sqrt(1 + alpha)`, `xi = (beta + 2 beta_s sqrt(r)) sqrt(Z / (3 (1 + 2 r)))`, beta_s that of the shear
-//! dashpot. The material with the least step is named.
+//! A grain of mass m among larger grains, held by Z contacts of stiffness k and tangential ratio r, oscillates with
+//! `w^2 = K / m`, `K = Z k (1 + 2 r) / 3`. A leapfrog with dashpots of ratio beta, shear dashpots of ratio beta_s and
+//! local damping alpha is stable up to `dt = (2 / w) (sqrt(1 + xi^2) - xi) / sqrt(1 + alpha)`,
+//! `xi = (beta + 2 beta_s sqrt(r)) sqrt(Z / (3 (1 + 2 r)))`. The message names the material with the smallest limit.
 
 use super::grains::{GrainLayer, approach, beds, contact_force};
 use crate::diag::{Code, Diagnostic};
@@ -12,7 +12,7 @@ use crate::scenario::{Contact, Scenario};
 use crate::units::number;
 use std::f64::consts::PI;
 
-/// Contacts of a grain that count.
+/// Number of contacts of a grain in the rule.
 const CONTACTS: f64 = 6.0;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
@@ -27,7 +27,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let diagnostic = Diagnostic::new(
         Code::L1020,
         format!(
-            "a step of {} us is {} times what the grains of `{}` bear, {} us: {} g of {} mm on their contacts",
+            "a step of {} us is {} times the limit for the grains of `{}`, {} us: the smallest have {} g and {} mm",
             number((*step * 1e8).round() / 100.0),
             number((*step / limit * 10.0).round() / 10.0),
             bed.layer.name,

@@ -1,4 +1,4 @@
-//! What rules of grains share: which layers are modelled as grains, and how hard their grains press on each other.
+//! Common parts of the rules for grains: the layers that are modelled as grains, and the contact forces in them.
 
 use super::{Led, led};
 use crate::graph::{Graph, Model};
@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 /// Share of the volume that grains fill in a packed bed.
 const SOLID: f64 = 0.6;
-/// Contacts of a grain in it.
+/// Contacts of a grain in a packed bed.
 const CONTACTS: f64 = 6.0;
 
 /// A layer whose grains are modelled.
@@ -24,7 +24,7 @@ pub(super) struct GrainLayer<'a> {
     pub top: bool,
 }
 
-/// The granular layers of a scene whose plan has grains; none where a settlement law answers.
+/// The granular layers of a scene whose plan has grains; none if a settlement law is used.
 pub(super) fn beds<'a>(scenario: &'a Scenario, graph: &Graph) -> Vec<GrainLayer<'a>> {
     if !graph.nodes.iter().any(|node| matches!(node.model, Model::Bed(_) | Model::Grains(_) | Model::Cells(_))) {
         return Vec::new();
@@ -45,13 +45,16 @@ pub(super) fn mm(length: f64) -> String {
     crate::units::number((length * 1e4).round() / 10.0)
 }
 
-/// Where the largest grain of a granular material is said: its cut, else its density, which stands beside its grading.
+/// The place that gives the largest grain of a granular material: its cut, else its density, which stands beside its
+/// grading.
 pub(super) fn of_sizes(granular: &Granular) -> Origin {
     granular.grading.cut_above.map_or(granular.density.origin, |cut| cut.origin)
 }
 
 impl GrainLayer<'_> {
-    /// Pressure on the layer, Pa: that of its packing, under the sleepers at least that of a passing wheel, in a rig that of its loads.
+    /// Pressure on the layer, Pa: the packing pressure. Under sleepers it is at least the pressure of a passing wheel,
+    /// in a rig at
+    /// least the pressure of its loads.
     pub fn pressure(&self, scenario: &Scenario, graph: &Graph) -> f64 {
         let packed = *self.granular.packing.pressure;
         let loaded = match led(scenario, graph) {
@@ -63,7 +66,7 @@ impl GrainLayer<'_> {
     }
 }
 
-/// Pressure under the sleepers of a section as a wheel passes, Pa; 0 where nobody knows their size.
+/// Pressure under the sleepers of a section as a wheel passes, Pa; 0 if the size of the sleepers is unknown.
 fn under_sleepers(scenario: &Scenario, graph: &Graph, traffic: Led<'_>, section: usize) -> f64 {
     let track = &scenario.track;
     let Some(load) = seat_load(scenario, graph, traffic, section) else { return 0.0 };
@@ -71,7 +74,7 @@ fn under_sleepers(scenario: &Scenario, graph: &Graph, traffic: Led<'_>, section:
     area.map_or(0.0, |area| load.peak.force * amplification(*traffic.train.speed) / area)
 }
 
-/// Pressure under the sleepers of a rig at the largest force of its loads, Pa; 0 where there are none.
+/// Pressure under the sleepers of a rig at the largest force of its loads, Pa; 0 without loads.
 fn under_loads(scenario: &Scenario, section: usize) -> f64 {
     let track = &scenario.track;
     let Some(Loading::Rig(loads)) = &scenario.loading else { return 0.0 };
@@ -80,13 +83,14 @@ fn under_loads(scenario: &Scenario, section: usize) -> f64 {
     area.map_or(0.0, |area| forces.fold(0.0, f64::max) / area)
 }
 
-/// Mean normal force, N, between grains of a size, m, under a pressure, Pa: `F = pi d^2 p / (Z phi)` of spheres of one size with
-/// Z contacts each that fill the share phi of the volume (Agnolin and Roux 2007, Phys. Rev. E 76, 061302; not at hand).
+/// Mean normal force, N, between grains of a size, m, under a pressure, Pa: `F = pi d^2 p / (Z phi)` for spheres of one
+/// size with Z contacts each that fill the share phi of the volume (Agnolin and Roux 2007, Phys. Rev. E 76, 061302; not
+/// at hand).
 pub(super) fn contact_force(size: f64, pressure: f64) -> f64 {
     PI * size * size * pressure / (CONTACTS * SOLID)
 }
 
-/// How far two grains of a size, m, approach each other under a normal force, N, and the tangent stiffness there, N/m.
+/// Approach of two grains of a size, m, under a normal force, N, and the tangent stiffness at this force, N/m.
 ///
 /// Linear: `F = k d`. Hertz: `F = 4/3 E* sqrt(R*) d^1.5` with `E* = E / 2 (1 - nu^2)` and `R* = R / 2`.
 pub(super) fn approach(contact: &Contact, size: f64, force: f64) -> (f64, f64) {

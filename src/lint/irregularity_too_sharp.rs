@@ -1,8 +1,8 @@
-//! L1011: a wheel cannot follow the rail's level as built: a dip is rounder than the wheel.
+//! L1011: a wheel cannot follow the rail's level as built: the radius of a dip is smaller than the radius of the wheel.
 //!
-//! Where the level z (positive down) is smooth, its radius is 1 / |z''|, in a dip z'' < 0; a wheel of radius R touches the
-//! bottom if 1 / |z''| > R. At a corner that opens upwards by the angle a the wheel bridges the bottom by R a^2 / 8. Crests,
-//! where z'' > 0, every wheel can follow.
+//! A smooth level z (positive down) has the radius 1 / |z''|; in a dip z'' < 0. A wheel of radius R touches the bottom
+//! if 1 / |z''| > R. At a corner that opens upwards by the angle a the wheel stays R a^2 / 8 above the bottom. Every
+//! wheel can follow a crest (z'' > 0).
 
 use super::led;
 use crate::diag::{Code, Diagnostic};
@@ -10,7 +10,7 @@ use crate::graph::Graph;
 use crate::scenario::{Curve, Profile, Scenario};
 use crate::units::number;
 
-/// A wheel that bridges less of a corner follows it, m: a tenth of its indentation.
+/// Gap between wheel and corner below which the wheel follows the corner, m: a tenth of its indentation.
 const BRIDGED: f64 = 1e-5;
 /// Half the interval over which the angle of a corner is taken, m.
 const REACH: f64 = 1e-3;
@@ -26,13 +26,20 @@ fn too_sharp(profile: &Profile, radius: f64) -> Option<Diagnostic> {
     let (x, sharpest) = sharpest_dip(profile).filter(|(_, r)| *r < radius)?;
     let (found, wheel) = (number((sharpest * 1e3).round() / 1e3), number(radius));
     let message = match sharpest {
-        0.0 => format!("the rail has a corner at x = {} m that a wheel of radius {wheel} m bridges", number(round(x))),
+        0.0 => format!(
+            "the rail has a corner at x = {} m; a wheel of radius {wheel} m does not touch its bottom",
+            number(round(x))
+        ),
         _ => {
-            format!("the rail dips with a radius of {found} m at x = {} m, the wheels have {wheel} m", number(round(x)))
+            format!(
+                "the rail has a dip of radius {found} m at x = {} m, less than the wheel radius of {wheel} m",
+                number(round(x))
+            )
         }
     };
     let diagnostic = Diagnostic::new(Code::L1011, message).help(
-        "level the data with a wheel's radius in mind: the model's wheel touches at one point and falls into every dip",
+        "smooth the data: a real wheel bridges such a place, but the wheel of the model has one contact point and \
+         follows it",
     );
     Some(match profile.origin.span() {
         Some(span) => diagnostic.label(span, "sharper than the wheel"),
@@ -62,7 +69,7 @@ fn sharpest_dip(profile: &Profile) -> Option<(f64, f64)> {
     dips.chain(bridged).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Where a curve may be roundest, with the second derivative there, 1/m.
+/// Places at which a curve may have its smallest radius, with the second derivative there, 1/m.
 fn second_derivatives(curve: &Curve) -> Vec<(f64, f64)> {
     match curve {
         Curve::Linear(_) => Vec::new(),
@@ -74,7 +81,7 @@ fn second_derivatives(curve: &Curve) -> Vec<(f64, f64)> {
     }
 }
 
-/// Whether a corner or step at x is one that a wheel of any usual radius bridges.
+/// Whether a wheel of a usual radius bridges a corner or step at x.
 fn bridges(profile: &Profile, x: f64) -> bool {
     const RADIUS: f64 = 0.5; // m: a corner has no radius of its own
     let z = |dx: f64| profile.value(x + dx);

@@ -1,4 +1,4 @@
-//! L1004: a settlement law is asked about forces or axle counts that it was not calibrated for.
+//! L1004: a settlement law is used for forces or axle counts outside its calibration.
 
 use super::led;
 use super::winkler::{SeatLoad, seat_loads};
@@ -25,9 +25,9 @@ fn beyond_cycles(scenario: &Scenario, law: &SettlementLaw, total: u64) -> Option
     let (_, most) = law.cycles.filter(|(_, most)| total as f64 > *most)?;
     let diagnostic = Diagnostic::new(
         Code::L1004,
-        format!("law `{}` is calibrated up to {} axles, the run has {total}", law.name, number(most)),
+        format!("law `{}` is calibrated up to {} axles, but the run has {total}", law.name, number(most)),
     )
-    .help("read what lies beyond as an extrapolation, or give a law for more axles");
+    .help("read the settlement beyond that count as an extrapolation, or choose a law for more axles");
     Some(pointed(diagnostic, scenario, law, "this law"))
 }
 
@@ -36,7 +36,7 @@ fn beyond_loads(scenario: &Scenario, law: &SettlementLaw, seat: &SeatLoad) -> Op
     let diagnostic = Diagnostic::new(
         Code::L1004,
         format!(
-            "law `{}` is calibrated for {} .. {} kN a seat, wheels at rest give about {} kN in section `{}`",
+            "law `{}` is calibrated for {} .. {} kN per seat, but wheels at rest give about {} kN in section `{}`",
             law.name,
             number(least / 1e3),
             number(most / 1e3),

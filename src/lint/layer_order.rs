@@ -1,7 +1,7 @@
 //! L1029: sleepers lie on sand or soil that lies on ballast.
 //!
-//! Layers are listed downwards. Ballast comes first: it drains and carries the pressure of the sleepers. Finer grains above it fall
-//! into its pores.
+//! Layers are listed downwards. Ballast comes first, because it drains and carries the pressure of the sleepers. Finer
+//! grains above the ballast fall into its pores.
 
 use super::strata::{grounds, is_ballast};
 use crate::diag::{Code, Diagnostic};

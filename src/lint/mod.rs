@@ -1,7 +1,7 @@
-//! Physics rules over the scene and its plan: what a careful colleague would point out. One rule a file.
+//! Physics rules: checks of the scene and its plan for values that are legal but implausible. One file per rule.
 //!
-//! A rule is silenced by `scenario { allow = [rule: "reason"] }` and made an error by `deny`. A few are silent until `warn`
-//! or `deny` names them.
+//! A rule is silenced by `scenario { allow = [rule: "reason"] }` and made an error by `deny`. A few are silent until
+//! `warn` or `deny` names them.
 
 mod ballast_on_structure;
 mod ballast_pressure;
@@ -93,28 +93,28 @@ const RULES: [Rule; 34] = [
     surface_waves::check,
 ];
 
-/// Applies every rule, at the level that the scene gives it. A rule speaks where the plan has what it is about. Rules know one
-/// train: of a mix each is asked in turn.
+/// Applies every rule, at the level that the scene gives it. A rule applies only if the plan has the part that it
+/// checks. Rules check one train; for a mix of trains they are applied to each train in turn.
 pub fn lint(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let views = led_by_each(scenario, graph);
     let each = |rule: &Rule| views.iter().flat_map(|(scenario, graph)| rule(scenario, graph)).collect::<Vec<_>>();
     levelled(RULES.iter().flat_map(each), scenario)
 }
 
-/// The traffic as a rule sees it: the train that leads, as the scene states it, and the loop over axles.
+/// The traffic for a rule: the leading train, as the scene states it, and the loop over axles.
 #[derive(Clone, Copy)]
 struct Led<'a> {
     train: &'a Train,
     blocks: &'a Blocks,
 }
 
-/// The traffic of a scene and its plan; `None` where no train runs.
+/// The traffic of a scene and its plan; `None` if no train runs.
 fn led<'a>(scenario: &'a Scenario, graph: &'a Graph) -> Option<Led<'a>> {
     let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
     Some(Led { train: &traffic.train, blocks: graph.blocks()? })
 }
 
-/// Each once, at the level that the scene gives its rule.
+/// Each diagnostic once, at the level that the scene gives its rule.
 fn levelled(all: impl Iterator<Item = Diagnostic>, scenario: &Scenario) -> Vec<Diagnostic> {
     let mut found: Vec<Diagnostic> = Vec::new();
     for diagnostic in all {
@@ -137,7 +137,7 @@ fn asked_for(scenario: &Scenario, rule: Code) -> bool {
     scenario.warn.iter().chain(&scenario.deny).any(|named| Some(named.as_str()) == rule.rule())
 }
 
-/// The scene as each of its trains would lead it.
+/// The scene once for each train, with this train as the leading train.
 fn led_by_each<'a>(scenario: &'a Scenario, graph: &'a Graph) -> Vec<(Cow<'a, Scenario>, Cow<'a, Graph>)> {
     let mut views = vec![(Cow::Borrowed(scenario), Cow::Borrowed(graph))];
     let others = graph.blocks().map_or(0, |blocks| blocks.others.len());
@@ -155,12 +155,12 @@ fn led_by_each<'a>(scenario: &'a Scenario, graph: &'a Graph) -> Vec<(Cow<'a, Sce
     views
 }
 
-/// The law that drives the run, then those beside it.
+/// The law that drives the run, then the laws beside it.
 fn laws(scenario: &Scenario) -> impl Iterator<Item = &SettlementLaw> {
     std::iter::once(&scenario.solve.law).chain(&scenario.solve.other_laws)
 }
 
-/// Points at the place where the scene asks for a law; where it leaves the law to the default, at its traffic.
+/// Points at the place in the scene that asks for a law; if the law is the default, at the traffic.
 fn pointed(diagnostic: Diagnostic, scenario: &Scenario, law: &SettlementLaw, text: &str) -> Diagnostic {
     let traffic = match &scenario.loading {
         Some(Loading::Traffic(traffic)) => traffic.total.origin.span().map(|span| (span, "under this traffic")),

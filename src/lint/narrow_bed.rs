@@ -1,7 +1,8 @@
-//! L1018: the bed of grains is so narrow or short that its walls order the grains.
+//! L1018: the bed of grains is so narrow or short that its walls affect the arrangement of the grains.
 //!
-//! Its least side over D90, which nine tenths of the modelled mass pass: across, the width between side wall and middle of the track (or both side walls);
-//! along, a cell of three bays or the window. Laboratories ask for six grains across a specimen (ASTM D4767, not at hand).
+//! Ratio of a side of the bed to D90, the size that nine tenths of the modelled mass pass. Across, the side is the
+//! width between side wall and middle of the track (or both side walls); along, it is a cell of three bays or the
+//! window. Laboratories ask for six grains across a specimen (ASTM D4767, not at hand).
 
 use super::grains::{GrainLayer, beds, mm, of_sizes};
 use crate::diag::{Code, Diagnostic, Span};
@@ -37,7 +38,7 @@ fn said(side: &Side, bed: &GrainLayer<'_>) -> Diagnostic {
     let diagnostic = Diagnostic::new(
         Code::L1018,
         format!(
-            "the bed is {} m {}, {} of the coarse grains of `{}`, D90 = {} mm",
+            "the bed is {} m {}, only {} coarse grains of `{}`, D90 = {} mm",
             number((side.length * 1e3).round() / 1e3),
             side.what,
             number((side.length / coarse * 10.0).round() / 10.0),
@@ -45,9 +46,12 @@ fn said(side: &Side, bed: &GrainLayer<'_>) -> Diagnostic {
             mm(coarse)
         ),
     )
-    .help(format!("{FEWEST} grains, {} m, keep the walls out of the answer", number(FEWEST * coarse)));
+    .help(format!(
+        "make it at least {} m ({FEWEST} x D90); otherwise the walls affect the result",
+        number(FEWEST * coarse)
+    ));
     match side.span.or_else(|| of_sizes(bed.granular).span()) {
-        Some(span) => diagnostic.label(span, "so few grains"),
+        Some(span) => diagnostic.label(span, "too few grains"),
         None => diagnostic,
     }
 }

@@ -1,7 +1,7 @@
 //! L1022: the run is expected to take more time or memory than the scene allows.
 //!
-//! The estimate is that of the plan: passages x steps x unknowns x a measured cost, and bytes an unknown; of a test rig steps x pebbles
-//! x a measured cost. Only what this version runs has one.
+//! The plan has the estimate: passages x steps x unknowns x a measured cost, and bytes per unknown; for a test rig
+//! steps x pebbles x a measured cost. Only plans that this version runs have an estimate.
 
 use crate::diag::{Code, Diagnostic};
 use crate::graph::{Cost, Graph, PassageWork, TestWork, Work};
@@ -29,20 +29,20 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
 fn of_passages(cost: &Cost, work: PassageWork, budget: Option<Given>) -> Option<Diagnostic> {
     let budget = budget.filter(|budget| cost.seconds > **budget)?;
     let message = format!(
-        "the run is expected to take {} on one core, its budget is {}: {} passages, {} steps in all",
+        "the run is expected to take {} on one core, more than its budget of {}: {} passages, {} steps in all",
         duration(cost.seconds),
         duration(*budget),
         work.passages,
         work.steps
     );
-    Some(said(message, budget, "fewer axles, longer blocks, a longer step or fewer elements cost less"))
+    Some(said(message, budget, "use fewer axles, longer blocks, a longer step or fewer elements"))
 }
 
 fn memory(cost: &Cost, holds: &str, memory: Option<Given>) -> Option<Diagnostic> {
     let bytes = cost.bytes as f64;
     let memory = memory.filter(|memory| bytes > **memory)?;
     let message = format!(
-        "the run is expected to take {} MiB for {holds}, it may take {} MiB",
+        "the run is expected to take {} MiB for {holds}, more than the limit of {} MiB",
         number((bytes / MIB).ceil()),
         number((*memory / MIB).floor())
     );
@@ -53,7 +53,7 @@ fn of_tests(cost: &Cost, work: TestWork, budget: Option<Given>) -> Option<Diagno
     let seconds = cost.seconds_on_two_cores;
     let budget = budget.filter(|budget| seconds > **budget)?;
     let message = format!(
-        "the test is expected to take {} on two cores, its budget is {}: {} grains, {} steps, {}",
+        "the test is expected to take {} on two cores, more than its budget of {}: {} grains, {} steps, {}",
         duration(seconds),
         duration(*budget),
         about(work.grains),
@@ -63,7 +63,7 @@ fn of_tests(cost: &Cost, work: TestWork, budget: Option<Given>) -> Option<Diagno
             several => format!("{several} packings"),
         }
     );
-    Some(said(message, budget, "fewer cycles or packings, a larger `cut_below` or larger grains (`scale`) cost less"))
+    Some(said(message, budget, "use fewer cycles or packings, a larger `cut_below` or larger grains (`scale`)"))
 }
 
 /// The value with two significant digits.
@@ -73,14 +73,14 @@ fn about(value: f64) -> String {
 
 /// Advice for a run that needs too much memory.
 pub(crate) const LESS_MEMORY: &str =
-    "a shorter track, fewer elements, a shorter `window` or larger grains (`scale`, `cut_below`) take less";
+    "use a shorter track, fewer elements, a shorter `window` or larger grains (`scale`, `cut_below`)";
 
 const MIB: f64 = (1u64 << 20) as f64;
 
 fn said(message: String, limit: Given, help: &str) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::L1022, message).help(help);
     match limit.origin.span() {
-        Some(span) => diagnostic.label(span, "less than that"),
+        Some(span) => diagnostic.label(span, "the limit"),
         None => diagnostic,
     }
 }

@@ -1,8 +1,8 @@
-//! L1023: a damper is so strong that its mass does not swing but creeps.
+//! L1023: a damper is so strong that its mass creeps and does not oscillate.
 //!
-//! Damping ratio `c / 2 sqrt(k m)` of a sleeper between pad and support, a bogie on its wheelsets, a car body on its bogies. Track has
-//! 0.05 .. 0.5, suspensions 0.01 .. 0.4; above 1 nothing swings. Most often a damping time was written for a damping, or a value of
-//! one wheel for one of a bogie.
+//! Damping ratio `c / 2 sqrt(k m)` of a sleeper between pad and support, a bogie on its wheelsets, a car body on its
+//! bogies. Track has 0.05 .. 0.5, suspensions 0.01 .. 0.4; above 1 nothing oscillates. The usual causes are a damping
+//! time written as a damping, and a value per wheel written as a value per bogie.
 
 use super::led;
 use crate::diag::{Code, Diagnostic};
@@ -53,7 +53,7 @@ impl Swinging {
         let diagnostic = Diagnostic::new(
             Code::L1023,
             format!(
-                "{} has {} times its critical damping: {} kN s/m on {} MN/m and {} kg",
+                "{} has {} times its critical damping: {} kN s/m with {} MN/m and {} kg",
                 self.what,
                 number((self.ratio() * 100.0).round() / 100.0),
                 number((self.damping / 1e2).round() / 10.0),
@@ -62,7 +62,7 @@ impl Swinging {
             ),
         )
         .help(format!(
-            "below {} kN s/m it swings: is the value of a wheel, a wheelset or a bogie, of a seat or a sleeper?",
+            "write less than {} kN s/m: is the value per wheel, per wheelset or per bogie, per seat or per sleeper?",
             number((critical / 1e3).floor())
         ));
         match self.origin.span() {

@@ -1,8 +1,8 @@
-//! L1007 and L1012: sleepers pass at a rate near a resonance, of a bogie on its springs or of a wheel on the track.
+//! L1007 and L1012: sleepers pass at a rate near the resonance of a bogie on its springs or of a wheel on the track.
 //!
-//! f = v / s against sqrt(2 k1 / m_b) / 2 pi (bounce), sqrt(2 k1 (w/2)^2 / J_b) / 2 pi (pitch) and the resonance of a wheel on the
-//! track. Ranges of speed near one resonance or another often touch: one warning names them as one range, so that no speed that
-//! it leaves is taken by the next.
+//! f = v / s is compared with sqrt(2 k1 / m_b) / 2 pi (bounce), sqrt(2 k1 (w/2)^2 / J_b) / 2 pi (pitch) and the
+//! resonance of a wheel on the track. Ranges of speed near two resonances often overlap. One warning names them as one
+//! range, so that no speed outside the range is near another resonance.
 
 use super::led;
 use super::wheel_on_track::resonance;
@@ -13,19 +13,19 @@ use crate::scenario::{Scenario, Track, Train, Vehicle};
 use crate::units::number;
 use std::f64::consts::PI;
 
-/// Frequencies closer than this share are near.
+/// Largest relative difference of near frequencies.
 const NEAR: f64 = 0.1;
-/// Ranges of speed less than this apart are one, km/h: no train keeps its speed in between.
+/// Ranges of speed with a smaller gap are joined, km/h, because no train keeps its speed in such a gap.
 const GAP: f64 = 5.0;
 
-/// What sleepers shake at one speed.
+/// A resonance that passing sleepers excite at one speed.
 #[derive(PartialEq)]
 struct Resonance {
     rule: Code,
     what: String,
     /// Hz.
     frequency: f64,
-    /// Distance of the sleepers that shake it, m.
+    /// Distance of the sleepers that excite it, m.
     spacing: f64,
 }
 
@@ -49,7 +49,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let mut all = resonances(scenario, graph, traffic.train);
     all.retain(|resonance| !allowed(resonance.rule));
     let near: Vec<&Resonance> = all.iter().filter(|resonance| resonance.is_near(*speed)).collect();
-    // under the rule that weighs more, of equal ones the first
+    // a denied rule comes first, then the first rule
     let Some(rule) = near.iter().map(|resonance| resonance.rule).min_by_key(|rule| (!denied(*rule), *rule)) else {
         return Vec::new();
     };
@@ -80,10 +80,10 @@ fn help(speed: f64, all: &[Resonance]) -> String {
     ranges.sort_by_key(|range| !here(range));
     let ranges: Vec<String> =
         ranges.iter().map(|[from, to]| format!("from {} to {} km/h", number(*from), number(*to))).collect();
-    format!("{} a resonance is near, at other speeds none", and_list(&ranges))
+    format!("avoid speeds {}: a resonance is near; at other speeds there is none", and_list(&ranges))
 }
 
-/// Ranges by ascending speed, those that meet as one.
+/// Ranges by ascending speed; ranges that meet become one.
 fn joined(mut ranges: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     ranges.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut joined: Vec<[f64; 2]> = Vec::new();
@@ -96,7 +96,7 @@ fn joined(mut ranges: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     joined
 }
 
-/// What sleepers can shake, each once.
+/// Resonances that passing sleepers can excite, each once.
 fn resonances(scenario: &Scenario, graph: &Graph, train: &Train) -> Vec<Resonance> {
     let track = &scenario.track;
     let mut found: Vec<Resonance> = Vec::new();

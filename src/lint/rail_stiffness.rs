@@ -1,15 +1,16 @@
-//! The static stiffness at rail level on both sides of a place, with the function that makes the table of a run: bending of rail and slab,
-//! seatings and sleepers that the wheel lifts beside itself are in it.
+//! The static stiffness at rail level on both sides of a place, by the function that makes the table of a run. It
+//! includes the bending of rail and slab, seatings, and sleepers that lift beside the wheel.
 
 use crate::graph::{Graph, LoadedPart, Responses, Schedule};
 use crate::solvers::track::{Loads, Track, solve_static, standing_stiffness};
 
-/// Bays of the track that is everywhere as at one seat: 24 m to each side of it, eight decay lengths of a soft track.
+/// Bays of the uniform track that repeats one seat: 24 m to each side, eight decay lengths of a soft track.
 const BAYS: usize = 81;
-/// A wheel load where the scene has none, N.
+/// Wheel load if the scene has none, N.
 const USUAL_LOAD: f64 = 100e3;
 
-/// The force that stands on the rail, N: the heaviest mean wheel load of a train, else the largest test load on the rail.
+/// The force on the rail, N: the heaviest mean wheel load of a train, else the largest test load on the
+/// rail.
 pub(super) fn load(graph: &Graph) -> f64 {
     let gravity = graph.track().map_or(0.0, |track| track.gravity);
     let heaviest = match &graph.schedule {
@@ -25,7 +26,7 @@ pub(super) fn load(graph: &Graph) -> f64 {
     if heaviest > 0.0 { heaviest } else { USUAL_LOAD }
 }
 
-/// Stiffness over a seat, N/m, of a track that is everywhere as there. `None` where rail, pad or support are not known.
+/// Stiffness over a seat, N/m, of a uniform track that repeats this seat. `None` if rail, pad or support are not known.
 pub(super) fn as_at(graph: &Graph, seat: usize, load: f64) -> Option<f64> {
     let node = graph.track()?.everywhere_as_at(seat, BAYS)?;
     let spring = graph.supports.get(seat).and_then(|support| support.spring);

@@ -1,7 +1,8 @@
 //! L1014: the rail's foot is stressed more than design rules allow.
 //!
-//! Under one wheel a beam on springs bends by `M = Q / (4 lambda)`, speed amplifies it, and the foot's section modulus W makes
-//! `M / W` of it. AREMA allows 25 ksi, 172 MPa, in continuously welded rail (unchecked).
+//! The bending moment of a beam on springs under one wheel is `M = Q / (4 lambda)`. Speed amplifies it; with the
+//! section modulus W of the foot the stress is `M / W`. AREMA allows 25 ksi, 172 MPa, in continuously welded rail
+//! (unchecked).
 
 use super::dynamic::amplification;
 use super::led;
@@ -31,7 +32,8 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let diagnostic = Diagnostic::new(
         Code::L1014,
         format!(
-            "the foot of the rail of `{}` is stressed by about {} MPa: {} kN m under a wheel of {} kN at rest, times {} at {} km/h",
+            "the stress in the rail foot of `{}` is about {} MPa: {} kN m under a wheel of {} kN at rest, times {} at \
+             {} km/h",
             section.name,
             number((stress / 1e6).round()),
             number((moment / 1e2).round() / 10.0),
@@ -40,9 +42,12 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             number((*speed * 36.0).round() / 10.0)
         ),
     )
-    .help(format!("{} MPa are usual at most: a stiffer rail or support, lighter axles or less speed", LARGEST / 1e6));
+    .help(format!(
+        "the usual limit is {} MPa: use a stiffer rail or support, lighter axles or a lower speed",
+        LARGEST / 1e6
+    ));
     vec![match section.rail.as_ref().and_then(|rail| rail.bending_stiffness.origin.span()) {
-        Some(span) => diagnostic.label(span, "of this rail"),
+        Some(span) => diagnostic.label(span, "this rail"),
         None => diagnostic,
     }]
 }

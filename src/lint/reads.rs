@@ -3,17 +3,17 @@
 use crate::graph::{Graph, Work};
 use crate::schema::{Reader, Reads};
 
-/// What rule L1022 holds a plan against.
+/// Limits of rule L1022 for a plan.
 const BUDGET: Reads = Reads { fields: &["solve.budget"], acts_where: "where this version can run the plan" };
 const MEMORY: Reads =
     Reads { fields: &["solve.memory"], acts_where: "where there are rails and this version can run the plan" };
-/// What rule L1020 looks at; a test rig chooses its own step.
+/// The step that rule L1020 checks; a test rig chooses its own step.
 const GRAIN_STEP: Reads = Reads {
     fields: &["solve.grain_step"],
     acts_where: "where grains lie under a track: `substructure = cells`, `zone` or `full`",
 };
 
-/// What physics rules read of a scene, and whether they have something to say about its plan.
+/// Fields of a scene that physics rules read, and whether a rule applies to the plan.
 pub fn readers(graph: &Graph) -> Vec<Reader> {
     let passages = matches!(graph.cost.work, Work::Passages(_));
     let grains_under_track = graph.has_grains_under_track();

@@ -1,9 +1,10 @@
-//! L1032: a stretch that stiffens the track is the wrong way round: it is stiffest at its far end and softens towards the stiffer
-//! side of the transition.
+//! L1032: a stretch that stiffens the track is the wrong way round: it is stiffest at its far end and softens towards
+//! the stiffer side of the transition.
 //!
-//! The static stiffness at rail level, as in L1001, at both ends of the stretch and just before it. A wedge lifts it by and by
-//! towards the structure. The other way round it makes two jumps: one where it begins, and the old one at the structure. A stretch
-//! that only softens the track is a defect and means what it says.
+//! The rule compares the static stiffness at rail level, as in L1001, at both ends of the stretch and just before it. A
+//! wedge increases this stiffness gradually towards the structure. A reversed wedge makes two jumps: one at its
+//! beginning, and the old jump at the structure. A stretch that only softens the track models a defect and is not
+//! reported.
 
 use super::rail_stiffness;
 use crate::diag::{Code, Diagnostic};
@@ -17,7 +18,7 @@ const DIFFERS: f64 = 1.05;
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let mut found: Vec<(&str, Diagnostic)> = Vec::new();
     for stretch in &scenario.track.stretches {
-        // one that stands at several transitions is told once
+        // a stretch at several transitions is reported once
         if !found.iter().any(|(name, _)| *name == stretch.name) {
             found.extend(reversed(stretch, &scenario.track, graph).map(|d| (stretch.name.as_str(), d)));
         }
@@ -41,7 +42,7 @@ fn reversed(stretch: &Stretch, track: &Track, graph: &Graph) -> Option<Diagnosti
     let (first, last) = (*inside.first()?, *inside.last()?);
     let (far, near, before) = if left { (first, last, first.checked_sub(1)) } else { (last, first, Some(last + 1)) };
     let before = before.filter(|seat| seats.contains(seat))?;
-    // one that does not reach to its transition is about something else
+    // a stretch that does not reach its transition is no wedge
     if (track.seats[near].x - transition.x).abs() > stretch.end - stretch.start {
         return None;
     }
@@ -57,8 +58,9 @@ fn reversed(stretch: &Stretch, track: &Track, graph: &Graph) -> Option<Diagnosti
     let shown = |stiffness: f64| number((stiffness / 1e5).round() / 10.0);
     let name = if transition.name.is_empty() { String::new() } else { format!(" `{}`", transition.name) };
     let message = format!(
-        "stretch `{}` softens towards the stiffer side of transition{name}: at rail level {} MN/m before it, {} at its far end, {} at the \
-         transition, {} beyond",
+        "stretch `{}` becomes softer towards the stiffer side of transition{name}: the stiffness at rail level is {} \
+         MN/m before it, \
+         {} at its far end, {} at the transition, {} beyond",
         stretch.name,
         shown(before),
         shown(far),
@@ -67,6 +69,6 @@ fn reversed(stretch: &Stretch, track: &Track, graph: &Graph) -> Option<Diagnosti
     );
     let diagnostic = Diagnostic::new(Code::L1032, message)
         .label(stretch.span, "from its first end to its last")
-        .help("turn it round: swap the two ends of `over`, or the two values that it runs between");
+        .help("reverse it: swap the two ends of `over`, or the two values of its ramp");
     Some(diagnostic)
 }

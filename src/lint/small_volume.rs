@@ -1,7 +1,7 @@
-//! L1024: a volume in which ballast is averaged holds few grains, or none.
+//! L1024: a volume in which ballast is averaged contains few grains, or none.
 //!
-//! Least side of the volume over the median grain d50 of the layer at its depth. Below three the mean is that of a few grains, and the
-//! next packing has another.
+//! Ratio of the smallest side of the volume to the median grain d50 of the layer at its depth. Below three the mean
+//! depends on a few grains, and another packing has another mean.
 
 use super::grains::{GrainLayer, beds, mm};
 use crate::diag::{Code, Diagnostic};
@@ -24,16 +24,19 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         let diagnostic = Diagnostic::new(
             Code::L1024,
             format!(
-                "a volume of {} mm holds {} median grains of `{}`, d50 = {} mm",
+                "a volume of {} mm is only {} median grains of `{}` wide, d50 = {} mm",
                 mm(side),
                 number((side / median * 10.0).round() / 10.0),
                 bed.layer.name,
                 mm(median)
             ),
         )
-        .help(format!("{FEWEST} of them, {} mm, are a mean; `repeats` gives its scatter", mm(FEWEST * median)));
+        .help(format!(
+            "make it at least {} mm ({FEWEST} x d50) for a reliable mean; `repeats` gives its scatter",
+            mm(FEWEST * median)
+        ));
         found.push(match record.span {
-            Some(span) => diagnostic.label(span, "a few grains"),
+            Some(span) => diagnostic.label(span, "too few grains"),
             None => diagnostic,
         });
     }
@@ -53,7 +56,7 @@ fn without_grains(scenario: &Scenario, graph: &Graph, record: &VolumeRecord) -> 
         return None;
     }
     let message = format!("no grains lie under seat {}: its volume is not recorded", names.join(", "));
-    let help = "record sleepers on grains, or let `solve.window` reach there";
+    let help = "record sleepers on grains, or extend `solve.window` to these sleepers";
     let diagnostic = Diagnostic::new(Code::L1024, message).help(help);
     Some(match record.span {
         Some(span) => diagnostic.label(span, "no grains in it"),

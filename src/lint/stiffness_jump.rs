@@ -1,7 +1,7 @@
 //! L1001: the static stiffness at rail level jumps at a transition.
 //!
-//! Each side as if the track went on as at the seat of its section that is nearest, by the function that makes the table of stiffness of a
-//! run. A ratio above 1.15 sets off the mechanism of Fig. 1 of the paper.
+//! Each side is a uniform track that repeats the nearest seat of its section, by the function that makes the table of
+//! stiffness of a run. A ratio above 1.15 starts the mechanism of Fig. 1 of the paper.
 
 use super::rail_stiffness;
 use crate::diag::{Code, Diagnostic};
@@ -28,14 +28,18 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         let mut diagnostic = Diagnostic::new(
             Code::L1001,
             format!(
-                "the stiffness at rail level jumps from {} to {} MN/m at transition{name}, by a factor of {} within {} m",
+                "the stiffness at rail level jumps from {} to {} MN/m at transition{name}, by a factor of {} within \
+                 {} m",
                 number((a / 1e5).round() / 10.0),
                 number((b / 1e5).round() / 10.0),
                 number((ratio * 100.0).round() / 100.0),
                 number((apart(track, i, transition.x) * 100.0).round() / 100.0)
             ),
         )
-        .help(format!("bring both sides within a factor of {LARGEST_RATIO}: softer pads on the stiff side, a stiffer support before it"));
+        .help(format!(
+            "bring both sides within a factor of {LARGEST_RATIO}: use softer pads on the stiff side or a stiffer \
+             support on the soft side"
+        ));
         for section in [i, i + 1] {
             let seat = track.seats[track.seats_of(section)].first();
             let stiffness = |seat: &Seat| match seat.is_ballasted() {

@@ -1,7 +1,8 @@
 //! L1016: a support is softer or stiffer than any that has been measured.
 //!
-//! Measured ballasted track has 20 .. 100 MN/m under half a sleeper; below 10 it is a swamp or a gap, above 200 a sleeper on
-//! concrete. Most often a value is of a whole sleeper, or of the whole track, and its `per` says otherwise.
+//! Measured ballasted track has 20 .. 100 MN/m under half a sleeper. Values below 10 mean a swamp or a gap, values
+//! above 200 a sleeper on concrete. The usual cause is a value for a whole sleeper, or for the whole track, with a
+//! wrong `per`.
 
 use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
@@ -13,12 +14,12 @@ const SOFTEST: f64 = 10e6;
 const STIFFEST: f64 = 200e6;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    // the layers of a rig are what is tested
+    // a rig tests its layers
     if graph.track().is_none() {
         return Vec::new();
     }
     let track = &scenario.track;
-    // the stiffness of a seat, and where the scene states it
+    // the stiffness of a seat, and the place at which the scene states it
     let stiffness = |index: usize| {
         let support = graph.supports.get(index)?.support?;
         Some((
@@ -34,13 +35,13 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         let beyond = supports().filter(|k| !(SOFTEST..=STIFFEST).contains(&k.0)).count();
         let said = |what: &str, (k, origin): (f64, Origin)| {
             let message = format!(
-                "{beyond} of {} supports of `{}` are {what} than measured ones: {} MN/m per seat",
+                "{beyond} of {} supports of `{}` are {what} than any measured support: {} MN/m per seat",
                 supports().count(),
                 section.name,
                 number((k / 1e5).round() / 10.0)
             );
             let diagnostic = Diagnostic::new(Code::L1016, message)
-                .help("20 .. 100 MN/m are usual under half a sleeper: is the value of a seat, a sleeper or the track?");
+                .help("20 .. 100 MN/m is usual under half a sleeper: is the value per seat, per sleeper or per track?");
             match origin.span() {
                 Some(span) => diagnostic.label(span, "this support"),
                 None => diagnostic,

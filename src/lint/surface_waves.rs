@@ -1,7 +1,8 @@
-//! L1035: a train on grains comes near the speed of surface waves in a layer below it.
+//! L1035: a train on grains is nearly as fast as surface waves in a layer below it.
 //!
-//! A load as fast as the waves of Rayleigh meets its own wave. c_R = c_S (0.862 + 1.14 nu) / (1 + nu) with c_S = sqrt(G / rho), the
-//! approximation of Bergmann. The model is as wide as its bed, and its sides throw waves back.
+//! The deflection under a load grows as its speed approaches the speed of Rayleigh waves. Bergmann's approximation is
+//! c_R = c_S (0.862 + 1.14 nu) / (1 + nu) with c_S = sqrt(G / rho). The model is as wide as its bed, and its sides
+//! reflect waves.
 
 use super::led;
 use crate::diag::{Code, Diagnostic};
@@ -9,7 +10,7 @@ use crate::graph::Graph;
 use crate::scenario::{Layer, Material, Scenario};
 use crate::units::number;
 
-/// Above this share of the speed of the waves they carry a good part of the deflection.
+/// Above this share of the wave speed the waves cause a considerable part of the deflection.
 const LARGEST_SHARE: f64 = 0.6;
 /// Porosity and Poisson's ratio of a layer of grains as a continuum.
 const POROSITY: f64 = 0.38;
@@ -34,14 +35,14 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let diagnostic = Diagnostic::new(
         Code::L1035,
         format!(
-            "{} km/h are {} % of the speed of surface waves in layer `{layer}`, {} km/h",
+            "the speed of {} km/h is {} % of the speed of surface waves in layer `{layer}`, {} km/h",
             number((*speed * 3.6).round()),
             number((100.0 * *speed / wave).round()),
             number((wave * 3.6).round())
         ),
     )
     .help(format!(
-        "the sides of this model throw such waves back: drive at {} km/h or slower, or make the layer stiffer",
+        "the sides of the model reflect these waves: write a speed of {} km/h or less, or make the layer stiffer",
         number((LARGEST_SHARE * wave * 3.6).floor())
     ));
     vec![match speed.origin.span() {
@@ -50,7 +51,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     }]
 }
 
-/// Speed of surface waves in a layer, m/s; `None` of grains that are known by their contacts alone.
+/// Speed of surface waves in a layer, m/s; `None` for grains without a modulus.
 fn surface_wave(layer: &Layer, x: f64) -> Option<f64> {
     let modulus = layer.youngs_modulus()?.value_at(x);
     let (density, poisson) = match &layer.material {
@@ -61,7 +62,7 @@ fn surface_wave(layer: &Layer, x: f64) -> Option<f64> {
     Some(shear_wave * of_shear_wave(poisson))
 }
 
-/// The speed of surface waves over that of shear waves.
+/// The ratio of the speed of surface waves to the speed of shear waves.
 fn of_shear_wave(poisson: f64) -> f64 {
     (0.862 + 1.14 * poisson) / (1.0 + poisson)
 }

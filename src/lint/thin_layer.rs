@@ -1,7 +1,8 @@
-//! L1009: a layer of grains holds so few of its coarse grains that it is no layer.
+//! L1009: a layer of grains is only a few of its coarse grains thick.
 //!
-//! `h / D90`, with the thickness where it is least and the size that nine tenths of the modelled mass pass. A grain that reaches from
-//! floor to sleeper is a strut, whatever the contact law says; about four across make a bed in which forces spread.
+//! `h / D90`, with the smallest thickness and the size that nine tenths of the modelled mass pass. A grain that reaches
+//! from the floor to the sleeper is a strut under any contact law. Forces spread in a bed that is about four grains
+//! thick.
 
 use super::grains::{beds, mm, of_sizes};
 use crate::diag::{Code, Diagnostic};
@@ -22,7 +23,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         let diagnostic = Diagnostic::new(
             Code::L1009,
             format!(
-                "layer `{}` of `{}` is {} mm thick, {} of its coarse grains, D90 = {} mm",
+                "layer `{}` of `{}` is {} mm thick, only {} of its coarse grains, D90 = {} mm",
                 bed.layer.name,
                 bed.section.name,
                 mm(thickness),
@@ -31,7 +32,8 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             ),
         )
         .help(format!(
-            "{FEWEST} of them, {} mm, make a layer in which forces spread: thicken it, or take grains of D90 = {} mm",
+            "forces spread in a layer of at least {} mm ({FEWEST} x D90): make it thicker, or use grains of D90 = {} \
+             mm",
             mm(FEWEST * coarse),
             mm((thickness / FEWEST * 1e3).floor() / 1e3)
         ));

@@ -1,8 +1,8 @@
-//! L1003: the track is too short for its train. Wheels come so near to the ends of the model that the ends take part in the
-//! answer, or a ballasted section has too few sleepers that see the whole train.
+//! L1003: the track is too short for its train. Wheels come so near to the ends of the model that the ends affect the
+//! result, or a ballasted section has too few sleepers that every wheel passes.
 //!
-//! The static deflection decays as exp(-lambda x); three characteristic lengths leave 5 %. Trains start on the track, and
-//! sleepers that only some wheels pass take the mean of ten that all pass.
+//! The static deflection decays as exp(-lambda x); after three characteristic lengths 5 % is left. Trains start on the
+//! track. Sleepers that only some wheels pass take the mean of ten sleepers that every wheel passes.
 
 use super::winkler::Winkler;
 use super::{Led, led};
@@ -22,7 +22,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let sections = 0..scenario.track.sections.len();
     let mut found = near_ends(scenario, graph, traffic);
     let sparse: Vec<Diagnostic> = sections.filter_map(|section| sparsely_passed(scenario, traffic, section)).collect();
-    // a section that is hardly passed says enough of its transitions
+    // a section with too few passed sleepers is reported without its transitions
     if sparse.is_empty() {
         found.extend(scenario.track.transitions.iter().find_map(|t| partly_passed(&scenario.track, traffic, t.x)));
     }
@@ -30,7 +30,8 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     found
 }
 
-/// A transition beside which a ballasted seat sees only some wheels of the train: its forces there are means of seats farther on.
+/// A transition with a ballasted seat beside it that only some wheels of the train pass: its forces are means of other
+/// seats.
 fn partly_passed(track: &Track, traffic: Led<'_>, x: f64) -> Option<Diagnostic> {
     let passed = traffic.blocks.passed();
     let beside = [x - BESIDE, x + BESIDE].map(|end| end.clamp(track.start(), track.end()));
@@ -38,7 +39,8 @@ fn partly_passed(track: &Track, traffic: Led<'_>, x: f64) -> Option<Diagnostic> 
     let unseen = seats.find(|seat| !passed.contains(&seat.x))?;
     let tenths = |x: f64| number((x * 10.0).round() / 10.0);
     let message = format!(
-        "train `{}` does not pass the transition at {} m whole: all its wheels run from {} m to {} m, and sleepers beyond take means",
+        "not every wheel of train `{}` passes the transition at {} m: all pass from {} m to {} m only; other sleepers \
+         take mean forces",
         traffic.train.name,
         tenths(x),
         tenths(passed.start),
@@ -50,7 +52,7 @@ fn partly_passed(track: &Track, traffic: Led<'_>, x: f64) -> Option<Diagnostic> 
     Some(at_length(Diagnostic::new(Code::L1003, message).help(advice), &track.sections[section]))
 }
 
-/// Ends that wheels come near; free ends have been asked for.
+/// Ends that wheels come near; free ends are not reported, because the scene asks for them.
 fn near_ends(scenario: &Scenario, graph: &Graph, traffic: Led<'_>) -> Vec<Diagnostic> {
     let track = &scenario.track;
     if track.rail_ends == RailEnds::Free {
@@ -69,7 +71,7 @@ fn near_ends(scenario: &Scenario, graph: &Graph, traffic: Led<'_>) -> Vec<Diagno
             format!("wheels come within {} m of the {side} end of the track", number((distance * 10.0).round() / 10.0)),
         )
         .help(format!(
-            "{}: {} m, three characteristic lengths of the rail, keep the end out of the answer",
+            "{}; results within {} m of an end (three characteristic lengths of the rail) depend on the end",
             more_track(track, side, ((needed - distance) * 10.0).ceil() / 10.0),
             number((needed * 10.0).ceil() / 10.0)
         ));
@@ -78,32 +80,34 @@ fn near_ends(scenario: &Scenario, graph: &Graph, traffic: Led<'_>) -> Vec<Diagno
     near.collect()
 }
 
-/// A ballasted section in which fewer than ten sleepers see every wheel.
+/// A ballasted section with fewer than ten sleepers that every wheel passes.
 fn sparsely_passed(scenario: &Scenario, traffic: Led<'_>, section: usize) -> Option<Diagnostic> {
     let track = &scenario.track;
     let ballasted = track.seats[track.seats_of(section)].iter().filter(|seat| seat.is_ballasted());
     let places: Vec<f64> = ballasted.map(|seat| seat.x).collect();
     let passed = traffic.blocks.passed();
     let (seen, count) = (places.iter().filter(|x| passed.contains(x)).count(), places.len());
-    // those of a short bridge may be few, and need no mean where all are passed
+    // a short bridge may have few sleepers; it needs no mean if every wheel passes all of them
     if seen >= PASSED.min(count) {
         return None;
     }
     let form = &track.sections[section];
     let message = match seen {
         0 => format!(
-            "no sleeper of section `{}` sees every wheel of the train: they settle by the wheels that they see",
+            "no sleeper of section `{}` is passed by every wheel of the train: the settlement there is too small",
             form.name
         ),
         n => format!(
-            "only {n} of the {count} sleepers of section `{}` see every wheel of the train: the others take their mean",
+            "every wheel of the train passes only {n} of the {count} sleepers of section `{}`: the others take their \
+             mean",
             form.name
         ),
     };
     Some(at_length(Diagnostic::new(Code::L1003, message).help(to_be_passed(track, section, &places, passed)), form))
 }
 
-/// Where more track lets enough sleepers of a section, at these places, be passed: ten of an outer one, all of an inner one.
+/// The track to add, so that every wheel passes enough sleepers of a section at these places: ten of an outer section,
+/// all of an inner section.
 fn to_be_passed(track: &Track, section: usize, places: &[f64], passed: Range<f64>) -> String {
     let (Some(first), Some(last)) = (places.first(), places.last()) else { return String::new() };
     let (spacing, outermost) = (*track.sections[section].spacing, track.sections.len() - 1);
@@ -120,15 +124,15 @@ fn to_be_passed(track: &Track, section: usize, places: &[f64], passed: Range<f64
     and_list(&advice.collect::<Vec<_>>())
 }
 
-/// Advice to let the model begin earlier or end later. The length of a structure is given: it never changes.
+/// Advice to add track at an end of the model. It never changes the length of a structure.
 fn more_track(track: &Track, side: &str, metres: f64) -> String {
     let outer = if side == "left" { track.sections.first() } else { track.sections.last() };
     let section = outer.map_or("", |section| section.name.as_str());
     let longer = match outer {
-        Some(Section { slab: None, .. }) => format!("a longer section `{section}`, or a section beyond it"),
-        _ => format!("a section of track beyond `{section}`"),
+        Some(Section { slab: None, .. }) => format!("make section `{section}` longer, or add a section beyond it"),
+        _ => format!("add a section of track beyond `{section}`"),
     };
-    format!("put {} m more track at the {side} end of the model, {longer}", number(metres))
+    format!("add {} m of track at the {side} end of the model: {longer}", number(metres))
 }
 
 /// Points at the length of a section.

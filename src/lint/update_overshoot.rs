@@ -1,8 +1,8 @@
-//! L1006: so much settles between two exchanges that the loop overshoots.
+//! L1006: the settlement between two exchanges is so large that the loop overshoots.
 //!
 //! The exchange is forward Euler in axles: a perturbation is amplified by 1 - A with A = (dS/dF) k_eff for the block's
-//! settlement S at peak force F, and k_eff at most the series of pad and support. A > 1 overshoots, A > 2 may grow. The first
-//! block is the worst: laws harden.
+//! settlement S at peak force F, and k_eff at most the series of pad and support. A > 1 overshoots, A > 2 may grow. The
+//! first block is the worst: laws harden.
 
 use super::led;
 use super::winkler::seat_loads;
@@ -31,7 +31,8 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let diagnostic = Diagnostic::new(
         Code::L1006,
         format!(
-            "the first {} axles settle {} mm before forces are computed anew: an error of one exchange comes back {} times as large",
+            "the first {} axles cause {} mm of settlement before forces are computed again: the next exchange \
+             multiplies an error by {}",
             first.axles,
             number((settled * 1e5).round() / 1e2),
             number(((amplification - 1.0).abs() * 10.0).round() / 10.0)
@@ -40,7 +41,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     .help("write `update_every = adaptive`")
     .rewrite(scenario.solve.update_span, "adaptive");
     vec![match scenario.solve.update_span {
-        Some(span) => diagnostic.label(span, "too long a block"),
+        Some(span) => diagnostic.label(span, "block too long"),
         None => diagnostic,
     }]
 }

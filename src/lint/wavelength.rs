@@ -1,10 +1,10 @@
-//! L1026: waves of the level as built are shorter than the steps of the wheels or the elements of the rail carry.
+//! L1026: waves of the level as built are too short for the time step or for the elements of the rail.
 //!
-//! Of a level z(x) the rms wavelength is l = 2 pi s' / s'', with the root mean squares of slope and second derivative: that of
-//! a sine, of a smooth step twice its length, of a random level twice the mean distance of its turning points (Rice 1944).
-//! At a speed v it shakes with f = v / l. A wheel runs v dt a step. The rail answers in bending waves of
-//! 2 pi (EI / (m (2 pi f)^2))^(1/4), of which cubic elements need four: the fourth power of their phase over 720 is 1 % of
-//! its stiffness then.
+//! The rms wavelength of a level z(x) is l = 2 pi s' / s'', with the root mean squares of slope and second derivative.
+//! It is the wavelength of a sine, twice the length of a smooth step, and twice the mean distance of the turning points
+//! of a random level (Rice 1944). At a speed v the level excites with f = v / l. A wheel moves v dt per step. The rail
+//! responds in bending waves of length 2 pi (EI / (m (2 pi f)^2))^(1/4). A wave needs four cubic elements: the fourth
+//! power of their phase over 720 is then 1 % of the stiffness.
 
 use super::led;
 use crate::diag::{Code, Diagnostic, Span};
@@ -34,7 +34,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let stride = speed * traffic.blocks.passage.time_step;
     if traffic.blocks.passage.adaptive.is_none() && wave / stride < STEPS_A_WAVE {
         let message = format!(
-            "a wheel at {} km/h runs {} mm a step, {} steps to a wave of {} m of the level",
+            "a wheel at {} km/h moves {} mm per step, {} steps per wave of {} m of the level",
             number((36.0 * speed).round() / 10.0),
             number((stride * 1e4).round() / 10.0),
             number((10.0 * wave / stride).floor() / 10.0),
@@ -56,7 +56,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let element = scenario.track.shortest_bay() / f64::from(*scenario.solve.elements_per_bay);
     if shortest / element < ELEMENTS_A_WAVE {
         let message = format!(
-            "waves of {} m at {} km/h shake the rail with {} Hz: its own waves of {} m have {} elements",
+            "waves of {} m at {} km/h excite the rail at {} Hz: its bending waves of {} m have {} elements",
             rounded(wave),
             number((36.0 * speed).round() / 10.0),
             number(frequency.round()),
@@ -75,7 +75,7 @@ fn rounded(length: f64) -> String {
     number((length * 1e3).round() / 1e3)
 }
 
-/// The rms wavelength of the smooth parts of a level, m; `None` where there are none.
+/// The rms wavelength of the smooth parts of a level, m; `None` without smooth parts.
 fn wavelength(level: &Profile) -> Option<f64> {
     let smooth = level.pieces.iter().filter(|piece| !matches!(piece.curve, Curve::Linear(_)));
     let (mut slope, mut curvature) = (0.0, 0.0);
@@ -106,10 +106,10 @@ mod tests {
             let found = wavelength(&level(|x| 1e-3 * (2.0 * PI * x / length).sin())).unwrap();
             assert!((found / length - 1.0).abs() < 5e-3, "{found} of {length}");
         }
-        // of two waves the shorter one counts by its curvature: l^2 = (a^2 + b^2) / (a^2 + b^2 n^2)
+        // the sum of two waves: l^2 = (a^2 + b^2) / (a^2 + b^2 n^2)
         let both = wavelength(&level(|x| (2.0 * PI * x).sin() + 0.1 * (20.0 * PI * x).sin())).unwrap();
         assert!((both / f64::sqrt(2.0 / 101.0) - 1.0).abs() < 1e-2, "{both}");
-        // a smooth step is half a wave: 2 pi / sqrt(10) of its length, as its cubic says
+        // a smooth step is half a wave: 2 pi / sqrt(10) of its length, by its cubic
         let step = Piece { start: 0.0, end: 0.3, curve: Curve::Level([[0.0, 0.0], [0.3, 1e-3]]) };
         let found = wavelength(&Profile { pieces: vec![step], origin: Origin::Derived }).unwrap();
         assert!((found / (0.3 * 2.0 * PI / f64::sqrt(10.0)) - 1.0).abs() < 1e-9, "{found}");

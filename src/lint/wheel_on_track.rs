@@ -1,8 +1,9 @@
-//! The resonance of a wheel on the track: rule L1012, which [`super::passing_frequency`] tells together with those of bogies.
+//! The resonance of a wheel on the track: rule L1012, which [`super::passing_frequency`] reports together with the
+//! resonances of bogies.
 //!
-//! Wheel and track in phase on the track's stiffness, `f = sqrt(K / (m_w + 3 m / (2 lambda))) / 2 pi`: K is that of a beam on
-//! springs at rail level, and `3 m / (2 lambda)` the mass of the bowl `exp(-lambda x) (cos lambda x + sin lambda x)` that moves
-//! with the wheel, of rail and sleepers m a metre.
+//! Wheel and track move in phase on the track's stiffness, `f = sqrt(K / (m_w + 3 m / (2 lambda))) / 2 pi`. K is the
+//! stiffness of a beam on springs at rail level. `3 m / (2 lambda)` is the mass of the deflection bowl
+//! `exp(-lambda x) (cos lambda x + sin lambda x)` that moves with the wheel, with rail and sleepers of m per metre.
 
 use super::winkler::Winkler;
 use crate::scenario::Vehicle;

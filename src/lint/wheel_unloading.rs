@@ -1,8 +1,8 @@
 //! L1013: at its speed a wheel loses much of its load over the level of the rail as built.
 //!
-//! A wheel that follows the level z, positive down, needs `m_w v^2 z''` less of its static load Q over a crest, where
-//! `z'' > 0`. A stiff track is assumed: a soft one gives way above the resonance of a wheel on it, and the wheel loses less.
-//! Above 0.6 Q a train is near derailing (EN 14363 for quasi-static unloading, unchecked).
+//! A wheel that follows the level z, positive down, loses `m_w v^2 z''` of its static load Q over a crest (`z'' > 0`).
+//! The rule assumes a stiff track. A soft track deflects above the resonance of a wheel on it, and the wheel loses
+//! less. Above 0.6 Q a train is near derailing (EN 14363 for quasi-static unloading, unchecked).
 
 use super::led;
 use crate::diag::{Code, Diagnostic};
@@ -48,7 +48,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         ),
     )
     .help(format!(
-        "level the rail, or run below {} km/h: {} % are bearable",
+        "smooth the level, or run below {} km/h: the limit is {} %",
         number(slower.floor()),
         LARGEST_SHARE * 100.0
     ));

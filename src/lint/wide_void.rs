@@ -1,9 +1,10 @@
-//! L1030: sleepers hang so far above their supports that no wheel presses them down.
+//! L1030: sleepers hang so far above their supports that no wheel presses them onto the supports.
 //!
-//! Between two seats that a length L apart carry it, the rail sags at most like a beam on two simple supports: under the heaviest
-//! wheel Q, with what its speed adds, by Q a^2 b^2 / (3 EI L), a and b from either end, and by 5 m g L^4 / (384 EI) of its own weight
-//! and that of the sleepers; the seats at the ends give way by Q / k. A support that lies deeper below the line between them is never
-//! touched: traffic cannot have made that void, and no law of settlement goes on with it.
+//! Between two carrying seats, L apart, the rail sags at most as a beam on two simple supports. The heaviest wheel Q,
+//! amplified by its speed, bends it by Q a^2 b^2 / (3 EI L), with a and b the distances to the two ends. The weight of
+//! rail and sleepers bends it by 5 m g L^4 / (384 EI). The seats at the ends deflect by Q / k. A sleeper never touches
+//! a support that lies deeper below the line between the ends: traffic cannot have made this void, and no settlement
+//! law continues it.
 
 use super::dynamic::amplification;
 use super::led;
@@ -13,19 +14,19 @@ use crate::graph::Graph;
 use crate::scenario::{Scenario, Seat, Track, Vehicle};
 use crate::units::number;
 
-/// Voids that are measured under hanging sleepers are of some millimetres; smaller ones than this pass, m.
+/// Measured voids under hanging sleepers are some millimetres; the rule allows voids smaller than this, m.
 const USUAL: f64 = 10e-3;
 
 /// A support that the sleeper above it does not reach.
 struct Void {
     seat: usize,
-    /// Below the line between two others, m.
+    /// Depth below the line between two other supports, m.
     depth: f64,
-    /// How far a wheel presses the rail down there at most, m.
+    /// Largest deflection of the rail there under a wheel, m.
     closed: f64,
 }
 
-/// What presses the rail down.
+/// Loads on the rail.
 struct Load {
     /// N.
     wheel: f64,
@@ -57,13 +58,15 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let (count, hang) =
         if voids.len() == 1 { ("1 sleeper".into(), "hangs") } else { (format!("{} sleepers", voids.len()), "hang") };
     let message = format!(
-        "{count} {hang} above supports that no wheel reaches: at {} the void is {} mm, and a wheel bends the rail down by {} mm at most",
+        "{count} {hang} above supports that no wheel reaches: the void at {} is {} mm, but a wheel bends the rail \
+         down by {} mm at most",
         track.seat_name(seat),
         mm(worst.depth),
         mm(worst.closed)
     );
     let diagnostic = Diagnostic::new(Code::L1030, message).help(format!(
-        "voids under sleepers are of some millimetres: write a `settlement` that differs less from seat to seat, below {} mm there",
+        "measured voids are some millimetres: write a `settlement` that differs less from seat to seat, by less than \
+         {} mm there",
         number((worst.closed.max(USUAL) * 1e3).floor())
     ));
     vec![match seat.initial_settlement.origin.span() {
@@ -72,7 +75,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     }]
 }
 
-/// The void under a seat that is the furthest from being closed, between any two others.
+/// The void that is the furthest from being closed, under a seat between any two others.
 fn void(track: &Track, seat: usize, beam: &Winkler, range: f64, load: &Load) -> Option<Void> {
     let here = &track.seats[seat];
     let stiffness = beam.modulus * track.bay(seat);
@@ -85,7 +88,7 @@ fn void(track: &Track, seat: usize, beam: &Winkler, range: f64, load: &Load) -> 
     let mut worst: Option<Void> = None;
     for left in track.seats[..seat].iter().rev() {
         let a = here.x - left.x;
-        // with the other end as near as can be; further left even more is closed
+        // with the nearest right end; from a more distant left end the wheel closes even more
         if closed(a, track.bay(seat).min(a)) > range {
             break;
         }
@@ -103,7 +106,7 @@ fn void(track: &Track, seat: usize, beam: &Winkler, range: f64, load: &Load) -> 
     worst
 }
 
-/// How far the support of a seat lies below the line between those of two others, m.
+/// Depth of the support of a seat below the line between the supports of two other seats, m.
 fn below(here: &Seat, left: &Seat, right: &Seat) -> f64 {
     let share = (here.x - left.x) / (right.x - left.x);
     let line = *left.initial_settlement + share * (*right.initial_settlement - *left.initial_settlement);

@@ -5,7 +5,7 @@ use crate::graph::{Graph, SupportNode};
 use crate::scenario::{Foot, Scenario, Section, Track, Vehicle, point_stiffness};
 use crate::solvers::settlement::Peak;
 
-/// A section smeared along the rail.
+/// A section as a continuous foundation along the rail.
 pub struct Winkler {
     /// Foundation modulus: seat stiffness over spacing, N/m per metre.
     pub modulus: f64,
@@ -16,8 +16,8 @@ pub struct Winkler {
 }
 
 impl Winkler {
-    /// A seat is pad and support in series; a slab adds its foundation over one bay. Where they vary, those of the
-    /// section's left end. `None` without seats, or where rail, pads or supports are not known.
+    /// A seat is pad and support in series; a slab adds its foundation over one bay. If they vary, the values at the
+    /// section's left end are used. `None` without seats, or if rail, pads or supports are not known.
     pub fn of_section(track: &Track, supports: &[SupportNode], section: usize) -> Option<Winkler> {
         let start = track.sections[section].start;
         let from = |index: &usize| (track.seats[*index].x - start).abs();
@@ -58,13 +58,14 @@ impl Winkler {
         (4.0 * self.modulus * self.bending_stiffness / (self.mass * self.mass)).powf(0.25)
     }
 
-    /// Share of a load that the seat under it takes: lambda s / 2.
+    /// Share of a load that the seat under it carries: lambda s / 2.
     pub fn seat_share(&self, spacing: f64) -> f64 {
         self.lambda() * spacing / 2.0
     }
 }
 
-/// What the heaviest wheel, at rest over a seat of a ballasted section, does to the support there, the track's weight included.
+/// Load and deflection of the support of a seat in a ballasted section under the heaviest wheel at rest and the track's
+/// weight.
 pub(super) struct SeatLoad {
     pub section: usize,
     pub winkler: Winkler,
@@ -80,8 +81,8 @@ pub(super) fn seat_loads(scenario: &Scenario, graph: &Graph, traffic: Led<'_>) -
     (0..scenario.track.sections.len()).filter_map(|section| seat_load(scenario, graph, traffic, section)).collect()
 }
 
-/// A ballasted section under the heaviest wheel of the train: the seat's share of it and its own weight, and the deflection of
-/// its support.
+/// A ballasted section under the heaviest wheel of the train: the load of a seat with the weight of the track, and the
+/// deflection of its support.
 pub(super) fn seat_load(scenario: &Scenario, graph: &Graph, traffic: Led<'_>, section: usize) -> Option<SeatLoad> {
     let (track, gravity) = (&scenario.track, *scenario.solve.gravity);
     let heaviest = traffic.train.vehicles.iter().map(Vehicle::mass).fold(0.0, f64::max);

@@ -1,4 +1,5 @@
-//! What a study found: a row a point, the best design or the Pareto front, and the nearest design where none meets every constraint.
+//! The result of a study: one row per point, the best design or the Pareto front, and the nearest design if none meets
+//! every constraint.
 
 use super::design::Level;
 use super::miss::Miss;
@@ -12,15 +13,15 @@ use crate::scenario::{Goal, Objective, Study};
 pub struct Answer {
     pub title: String,
     pub study: Study,
-    /// The scene as it is first, where it could run; then the points of the design in their order.
+    /// The scene as it is first, if it could run; then the points of the design in order.
     pub rows: Vec<Row>,
     pub left_out: usize,
 }
 
-/// A point with what became of it.
+/// A point with its outcome.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// Its place in the design, from 1; 0 where it is the scene as it is and nothing else.
+    /// Its number in the design, from 1; 0 if it is only the scene as it is.
     pub number: usize,
     pub as_it_is: bool,
     pub levels: Vec<Level>,
@@ -28,7 +29,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// What is measured, SI; `None` where the point failed.
+    /// The measured values, SI; `None` if the point failed.
     pub fn values(&self) -> Option<&[f64]> {
         match &self.outcome {
             PointOutcome::Done { values, .. } => Some(values),
@@ -36,7 +37,7 @@ impl Row {
         }
     }
 
-    /// Standard deviations of the same over repeats, 0 for one run.
+    /// Standard deviations of the measured values over repeats, 0 for one run.
     pub fn deviations(&self) -> Option<&[f64]> {
         match &self.outcome {
             PointOutcome::Done { deviations, .. } => Some(deviations),
@@ -44,7 +45,7 @@ impl Row {
         }
     }
 
-    /// By how much each constraint is missed; nothing where the point failed.
+    /// The miss of each constraint; empty if the point failed.
     pub fn misses(&self) -> &[Option<Miss>] {
         match &self.outcome {
             PointOutcome::Done { misses, .. } => misses,
@@ -96,7 +97,7 @@ impl Answer {
         self.rows.iter().enumerate().filter(|(_, row)| row.designed())
     }
 
-    /// The scene as it is, where it could run.
+    /// The scene as it is, if it could run.
     pub fn as_it_is(&self) -> Option<&Row> {
         self.rows.iter().find(|row| row.as_it_is)
     }
@@ -105,7 +106,7 @@ impl Answer {
         self.rows.iter().filter(|row| row.failed().is_some())
     }
 
-    /// Objectives of a row, each the smaller the better.
+    /// Objectives of a row; for each, a smaller value is better.
     pub(super) fn costs(&self, row: &Row) -> Option<Vec<f64>> {
         let values = row.values()?;
         let measured = self.study.measured();
@@ -116,9 +117,9 @@ impl Answer {
         self.study.objectives.iter().map(cost).collect()
     }
 
-    /// Indices of the designs that no other one beats: of one objective the best, of several the Pareto front in the order of
-    /// the first. Only designs that meet every constraint take part; equal ones all do. The scene as it is takes part where it is a
-    /// point of the design.
+    /// Indices of the designs that no other design beats: with one objective the best, with several the Pareto front in
+    /// the order of the first objective. Only designs that meet every constraint are compared; equal designs are all
+    /// included. The scene as it is is included if it is a point of the design.
     pub fn best(&self) -> Vec<usize> {
         if self.study.objectives.is_empty() {
             return Vec::new();
@@ -131,8 +132,8 @@ impl Answer {
         front.into_iter().map(|(index, _)| *index).collect()
     }
 
-    /// Where no design meets every constraint: the one whose largest miss is the smallest, as a share of its limit. `None` where one
-    /// meets them all, or none ran.
+    /// If no design meets every constraint: the design with the smallest largest miss, as a share of its limit. `None`
+    /// if a design meets every constraint, or none ran.
     pub fn nearest(&self) -> Option<usize> {
         if self.designs().any(|(_, row)| row.feasible()) {
             return None;
@@ -153,7 +154,7 @@ impl Answer {
     }
 }
 
-/// Whether a point is better than another in one objective and worse in none; of each the smaller is better.
+/// Whether a point is better than another in one objective and worse in none; smaller values are better.
 pub(super) fn beats(a: &[f64], b: &[f64]) -> bool {
     a != b && a.iter().zip(b).all(|(a, b)| a <= b)
 }

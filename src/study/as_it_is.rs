@@ -1,4 +1,5 @@
-//! The scene as it is, beside the points of a study: with the lines that the study sets, and none of those that it varies.
+//! The scene as it is, beside the points of a study: with the lines that the study sets, but without the lines that it
+//! varies.
 
 use super::design::Level;
 use super::point::{PlannedPoint, Scene, content, leaves_open, settings};
@@ -7,14 +8,14 @@ use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
 use crate::scenario::{Axis, Study, Values};
 
-/// The scene as it is, legal and costed.
+/// The scene as it is, checked and with its cost.
 pub(super) struct AsItIs {
     pub point: PlannedPoint,
     compiled: Compiled,
 }
 
 impl AsItIs {
-    /// Compiles it. Fails with a warning where it cannot run with what the study sets.
+    /// Compiles it. Fails with a warning if it cannot run with the settings of the study.
     pub fn new(scene: Scene<'_>, study: &Study) -> Result<AsItIs, Diagnostic> {
         let overrides = settings(study);
         let compiled = scene.compile(&overrides);
@@ -44,7 +45,7 @@ impl AsItIs {
         }
     }
 
-    /// Whether a point is the scene as it is: both run the same, and are asked the same.
+    /// Whether a point equals the scene as it is: same run and same questions.
     pub fn is(&self, run: &Graph, own: &Study) -> bool {
         let same_run = self.compiled.runnable().is_some_and(|mine| runs_as(mine, run));
         same_run && asked(&self.compiled, &own.name).is_some_and(|mine| asks_as(mine, own))
@@ -56,7 +57,7 @@ fn asked<'a>(compiled: &'a Compiled, name: &str) -> Option<&'a Study> {
     compiled.studies.iter().find(|study| study.name == name)
 }
 
-/// Whether two plans compute the same; how they were decided and what they cost may be told in other words.
+/// Whether two plans compute the same; their notes and costs may differ.
 fn runs_as(a: &Graph, b: &Graph) -> bool {
     (&a.nodes, &a.edges, &a.schedule, &a.records, &a.supports)
         == (&b.nodes, &b.edges, &b.schedule, &b.records, &b.supports)
@@ -69,7 +70,7 @@ fn asks_as(a: &Study, b: &Study) -> bool {
     measured(a) == measured(b) && compared(a) == compared(b)
 }
 
-/// What the scene says of an axis, as the place in its list where it stands there.
+/// The value of the scene for an axis, as its place in the list of the axis if it is there.
 fn level(axis: &Axis) -> Level {
     let (text, number) = match &axis.written {
         Some(written) => (written.text.clone(), written.number),
@@ -92,9 +93,9 @@ fn cannot_run(study: &Study, mistake: Option<Diagnostic>) -> Diagnostic {
             code => format!("{} ({code})", mistake.message),
         },
     );
-    let set = if study.set.is_empty() { "" } else { " with what the study sets" };
+    let set = if study.set.is_empty() { "" } else { " with the settings of the study" };
     let message = format!("study `{}` has no point for the scene as it is, which cannot run{set}: {why}", study.name);
     Diagnostic::new(Code::E0712, message)
         .label(study.span, "its points are compared with each other only")
-        .help("make the scene legal by itself, so that the study can say what each point changes")
+        .help("correct the scene itself, so that each point can be compared with it")
 }

@@ -1,4 +1,4 @@
-//! The points of a study beside the scene as it is, and beside their constraints.
+//! The points of a study compared with the scene as it is, and with their constraints.
 
 use super::answer::{Answer, Row, beats};
 use super::miss::Miss;
@@ -6,25 +6,27 @@ use crate::scenario::Measured;
 use crate::scenario::response::{Expectation, Expression, Reduction, Response};
 use crate::units::number;
 
-/// By how much a point differs from the scene as it is in what is measured.
+/// Difference of a measured value between a point and the scene as it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Difference {
     /// SI.
     pub of: f64,
-    /// A share of the value of the scene as it is; `None` where that says nothing: of zero, across a sign, of a place or a count.
+    /// The difference as a share of the value of the scene as it is; `None` if a share has no meaning: zero, a change
+    /// of sign, a place or
+    /// a count.
     pub share: Option<f64>,
 }
 
-/// How the designs do against one constraint.
+/// Results of the designs for one constraint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MetAndMissed {
     pub text: String,
-    /// The unit in which it is told, and its size in SI.
+    /// The unit for output, and its size in SI.
     pub unit: (String, f64),
-    /// Designs that meet it, and that miss it.
+    /// Numbers of designs that meet it and that miss it.
     pub met: usize,
     pub missed: usize,
-    /// The misses of the designs that come nearest and stay farthest, by their shares.
+    /// The smallest and the largest miss of the designs, by share.
     pub least: Option<Miss>,
     pub largest: Option<Miss>,
 }
@@ -41,7 +43,7 @@ impl Difference {
         }
     }
 
-    /// `-38 %`, `+0.4 mm` where a share says nothing, or `same`.
+    /// `-38 %`, `+0.4 mm` if a share has no meaning, or `same`.
     pub fn text(&self, what: &Measured) -> String {
         if self.of == 0.0 {
             return "same".to_string();
@@ -71,15 +73,15 @@ fn signed(x: f64) -> String {
 }
 
 impl Answer {
-    /// How far a row is from the scene as it is in the measured value of that index; `None` where one of both failed, and of the scene
-    /// as it is itself.
+    /// Difference of a row from the scene as it is in the measured value of that index; `None` if one of both failed,
+    /// and for the scene as it is itself.
     pub fn difference(&self, row: &Row, index: usize) -> Option<Difference> {
         let as_it_is = self.as_it_is().filter(|_| !row.as_it_is)?;
         let (value, before) = (row.values()?.get(index)?, as_it_is.values()?.get(index)?);
         Some(Difference::between(self.study.measured().get(index)?, *value, *before))
     }
 
-    /// Every constraint, with how the designs that ran do against it.
+    /// Every constraint, with the results of the designs that ran.
     pub fn constraints(&self) -> Vec<MetAndMissed> {
         let one = |(index, constraint): (usize, &Expectation)| {
             let misses: Vec<Option<Miss>> =
@@ -98,13 +100,13 @@ impl Answer {
         self.study.constraints.iter().enumerate().map(one).collect()
     }
 
-    /// What a row misses, each as `` `max(settlement) < 3 mm` by 0.4 mm (13 %) ``.
+    /// The missed constraints of a row, each as `` `max(settlement) < 3 mm` by 0.4 mm (13 %) ``.
     pub fn missed(&self, row: &Row) -> Vec<String> {
         let pairs = self.study.constraints.iter().zip(row.misses());
         pairs.filter_map(|(c, miss)| Some(format!("`{}` by {}", c.text, amount(&(*miss)?, &c.unit)))).collect()
     }
 
-    /// How the best designs stand against the scene as it is; `None` where there is nothing to compare.
+    /// The best designs compared with the scene as it is; `None` if there is nothing to compare.
     pub fn against_as_it_is(&self) -> Option<String> {
         let as_it_is = self.as_it_is()?;
         let best = self.best();
@@ -154,7 +156,7 @@ pub fn amount(miss: &Miss, unit: &(String, f64)) -> String {
     format!("{} ({} %)", by.trim_end(), significant(miss.share * 100.0))
 }
 
-/// Three digits, and whole numbers above.
+/// Three digits; whole numbers above 100.
 fn significant(x: f64) -> String {
     number(if x.abs() < 100.0 { format!("{x:.2e}").parse().unwrap_or(x) } else { x.round() })
 }

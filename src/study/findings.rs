@@ -1,4 +1,5 @@
-//! What stands against the points of a study, told where the study gives their values, and once for all points that say the same.
+//! Diagnostics of the points of a study, shown at the place where the study gives the values, and once for all points
+//! with the same diagnostic.
 
 use super::design::Level;
 use super::point::values;
@@ -6,14 +7,14 @@ use crate::diag::{Code, Diagnostic, FileId, Label, Severity, Sources, Span};
 use crate::scenario::{Study, Values};
 use std::collections::BTreeMap;
 
-/// Where a diagnostic of a point stands in the scene of the study.
+/// The place of a point's diagnostic in the scene of the study.
 pub(super) type Place = Vec<Label>;
 
-/// Finds places of a point's sources in those of the scene.
+/// Finds places of a point's sources in the sources of the scene.
 pub(super) struct Places<'a> {
     pub base: &'a Sources,
     pub own: &'a Sources,
-    /// Overrides of the command line, which both have.
+    /// Overrides of the command line, common to both.
     pub given: usize,
     pub study: &'a Study,
     pub levels: &'a [Level],
@@ -29,7 +30,7 @@ impl Places<'_> {
         (!labels.is_empty()).then_some(labels)
     }
 
-    /// The axes and settings of the study by which a diagnostic speaks of edited lines; `None` where it speaks of none.
+    /// The axes and settings of the study for the edited lines of a diagnostic; `None` if it has no edited lines.
     pub fn of_edits(&self, diagnostic: &Diagnostic) -> Option<Place> {
         let settings = self.study.set.iter().map(|setting| setting.span);
         let edits: Vec<Span> = settings.chain(self.study.axes.iter().map(|axis| axis.span)).collect();
@@ -41,7 +42,7 @@ impl Places<'_> {
         (!labels.is_empty()).then_some(labels)
     }
 
-    /// Overrides stand behind the main file, in their order; an edited line is told where the study gives its value.
+    /// Overrides follow the main file, in order; an edited line is shown at the place where the study gives its value.
     fn span(&self, span: Span) -> Option<Span> {
         let file = span.file.0 as usize;
         if file <= self.given {
@@ -64,7 +65,7 @@ impl Places<'_> {
     }
 }
 
-/// Diagnostics of points, gathered where they say the same of the same place.
+/// Diagnostics of points, grouped by message and place.
 #[derive(Default)]
 pub(super) struct Findings {
     order: Vec<Finding>,
@@ -85,7 +86,7 @@ impl Findings {
         match self.known.get(&key) {
             Some(index) => {
                 let finding = &mut self.order[*index];
-                // a point may say several things of one place, and counts once
+                // a point may have several diagnostics at one place, and counts once
                 finding.points += usize::from(finding.first.0 != number);
             }
             None => {
@@ -116,7 +117,7 @@ impl Finding {
         }
         let help = match help {
             Some(help) => help,
-            None => "narrow what varies, or leave such points out with a condition in `subject_to`".to_string(),
+            None => "narrow the varied values, or leave such points out with a condition in `subject_to`".to_string(),
         };
         let code = if code == Code::E0705 { String::new() } else { format!(" ({code})") };
         let message = format!("{many} of study `{}` cannot run: {message}{code}, {first}", study.name);

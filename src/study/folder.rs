@@ -1,8 +1,8 @@
-//! The directory of a study: each point is kept as soon as it is there, and the answer is put in place at once. A study that was
-//! killed finds there what it has.
+//! The directory of a study: each point is stored as soon as it is finished, and the result is written at once. A study
+//! that was killed continues with the stored points.
 //!
-//! Runs are kept by what their points are made of and never by a number, so that no result can stand for another scene's, and any
-//! number of processes can add theirs.
+//! Runs are stored by the content of their points and not by a number, so that no result can be taken for a result of
+//! another scene, and any number of processes can add results.
 
 use super::{Answer, Plan, PlannedPoint, PointOutcome, PointResult, Repeat, values};
 use crate::compile::{Compiled, fingerprint};
@@ -16,13 +16,13 @@ use std::path::Path;
 /// Outcomes of a finished study by the fingerprints of their points.
 const POINTS: &str = "points.json";
 
-/// A directory in which a study is under way, or finished.
+/// The directory of a running or finished study.
 #[derive(Debug)]
 pub struct StudyFolder {
     directory: Directory,
-    /// What a finished study found, without what an older version kept in another form.
+    /// The results of a finished study, without results that an older version stored in another form.
     finished: Option<BTreeMap<String, PointOutcome>>,
-    /// Constraints of the study: an older version did not keep by how much each is missed.
+    /// Constraints of the study: an older version did not store the misses.
     constraints: usize,
     /// Runs of each point.
     repeats: u32,
@@ -50,8 +50,8 @@ impl StudyFolder {
         self.finished.is_some()
     }
 
-    /// The result of a point that has been kept; `None` where it has not run, or an older version kept less of it. Fails where its
-    /// file is damaged.
+    /// The stored result of a point; `None` if it has not run, or if an older version stored less. Fails if its file is
+    /// damaged.
     pub fn known(&self, point: &PlannedPoint) -> Result<Option<PointResult>, StoreError> {
         let outcome = match self.finished.as_ref().and_then(|finished| finished.get(&point.fingerprint)) {
             Some(outcome) => Some(outcome.clone()),
@@ -68,14 +68,15 @@ impl StudyFolder {
         Ok(whole.map(|outcome| PointResult { number: point.number, outcome }))
     }
 
-    /// A run of a point that has been kept; `None` where it has not run. Fails where its file is damaged.
+    /// The stored run of a point; `None` if it has not run. Fails if its file is damaged.
     pub fn known_run(&self, point: &PlannedPoint, repeat: u32) -> Result<Option<Repeat>, StoreError> {
         let Some(bytes) = self.directory.kept(&point.key(repeat))? else { return Ok(None) };
         let run = serde_json::from_slice(&bytes);
         run.map(Some).map_err(|cause| StoreError::damaged(self.directory.path(), cause))
     }
 
-    /// Keeps a run of a point until the study is finished; one that was finished before holds its old results until then.
+    /// Stores a run of a point until the study is finished; a study that was finished before keeps its old results
+    /// until then.
     pub fn keep(&self, point: &PlannedPoint, repeat: u32, run: &Repeat) -> Result<(), StoreError> {
         if self.is_finished() {
             return Ok(());
@@ -83,12 +84,12 @@ impl StudyFolder {
         self.directory.keep(&point.key(repeat), &self.text("a run", run)?).map(drop)
     }
 
-    /// The directory, in which other processes may work for the study.
+    /// The directory; other processes may work on the study in it.
     pub fn directory(&self) -> &Directory {
         &self.directory
     }
 
-    /// Puts the answer in place; equal studies leave equal bytes but for the timings.
+    /// Writes the result; equal studies give equal bytes except for the timings.
     pub fn finish(
         mut self,
         plan: &Plan,
@@ -126,7 +127,7 @@ impl StudyFolder {
     }
 }
 
-/// What names a study: its scene, its points, and the program that runs them.
+/// The identity of a study: its scene, its points, and the program that runs them.
 fn design(plan: &Plan, compiled: &Compiled) -> Value {
     let point = |p: &PlannedPoint| {
         let values = values(&plan.study, &p.levels);
@@ -141,7 +142,7 @@ fn design(plan: &Plan, compiled: &Compiled) -> Value {
 
 fn provenance(compiled: &Compiled) -> Value {
     let main = compiled.sources.iter().next().map(|(_, source)| source);
-    // the name alone: equal scenes give equal files wherever they lie
+    // only the name, so that equal scenes in different folders give equal files
     let name = main.map_or("", |s| s.name.rsplit(['/', '\\']).next().unwrap_or(&s.name));
     json!({
         "program": env!("CARGO_PKG_NAME"),

@@ -1,17 +1,17 @@
-//! The files of a study: a table with a row a point, and what was found.
+//! The files of a study: a table with one row per point, and the results.
 
 use super::answer::{Answer, Row};
 use super::compared::Difference;
 use crate::scenario::{Sampling, Values};
 use serde_json::{Value, json};
 
-/// A text that no program of tables takes for a formula: what begins with a sign stands in brackets.
+/// A text that no spreadsheet takes for a formula: a text that begins with a sign is put in brackets.
 fn no_formula(text: &str) -> String {
     if text.starts_with(['-', '+', '=', '@']) { format!("({text})") } else { text.to_owned() }
 }
 
 impl Answer {
-    /// `study.csv`: a row a point, the scene as it is first; values in the units of their headers.
+    /// `study.csv`: one row per point, the scene as it is first; values in the units of their headers.
     pub fn csv(&self) -> Result<String, String> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(self.header()).map_err(|e| e.to_string())?;
@@ -71,7 +71,7 @@ impl Answer {
         cells
     }
 
-    /// What was found, for `study.json`; the same for equal studies.
+    /// The results, for `study.json`; the same for equal studies.
     pub fn json(&self) -> Value {
         let study = &self.study;
         let axes = study.axes.iter().map(|axis| {
@@ -113,7 +113,8 @@ impl Answer {
         })
     }
 
-    /// A point with its lines, what is measured, how that differs from the scene as it is, and what it misses.
+    /// A point with its lines, its measured values, their differences from the scene as it is, and its missed
+    /// constraints.
     fn design(&self, row: &Row) -> Value {
         let value = |(index, value): (usize, &f64)| {
             let m = self.study.measured()[index];

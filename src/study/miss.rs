@@ -1,20 +1,22 @@
-//! By how much a run misses a constraint.
+//! The miss of a constraint by a run.
 
 use crate::results::holds;
 use crate::scenario::response::Expectation;
 use serde::{Deserialize, Serialize};
 
-/// How far a constraint is missed.
+/// The miss of a constraint.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Miss {
-    /// What is missing, SI.
+    /// The difference to the limit, SI.
     pub by: f64,
-    /// The same as a share of the limit. Where the limit is zero, or both sides come from the run, of the larger side.
+    /// The same as a share of the limit. If the limit is zero, or both sides come from the run, as a share of the
+    /// larger side.
     pub share: f64,
 }
 
 impl Miss {
-    /// How far a comparison is missed by its operands, SI; of a chained one the side that misses most. `None` where it is met.
+    /// The miss of a comparison with these operands, SI; for a chained comparison the largest miss. `None` if it is
+    /// met.
     pub fn against(comparison: &Expectation, values: &[f64]) -> Option<Miss> {
         let missed = |side: usize| {
             let (left, right) = (values[side], values[side + 1]);
@@ -56,7 +58,7 @@ mod tests {
         assert_eq!(miss(1.0, 2.0, 4.0), None);
         assert_eq!(miss(1.0, 5.0, 4.0), Some(Miss { by: 1.0, share: 0.25 }));
         assert_eq!(miss(2.0, 1.0, 4.0), Some(Miss { by: 1.0, share: 0.5 }));
-        // at a limit of zero the share is of what was found, and a limit itself may be excluded
+        // at a limit of zero the share refers to the found value, and the limit itself may be excluded
         assert_eq!(miss(-9.0, 3.0, 0.0), Some(Miss { by: 3.0, share: 1.0 }));
         assert_eq!(miss(2.0, 2.0, 4.0), Some(Miss { by: 0.0, share: 0.0 }));
     }

@@ -1,8 +1,8 @@
-//! Studies of a scene: what becomes of it when values vary.
+//! Studies of a scene: its results when values vary.
 //!
-//! [`design`](mod@design) chooses the points of a study that a file declares, [`plan`](fn@plan) checks and costs them all,
-//! [`perform`](fn@perform) runs one, and [`Answer`] says what came out and which design is best;
-//! [`StudyFolder`] is its directory. [`Runs`] are some of it for another process.
+//! [`design`](mod@design) chooses the points of a study that a file declares, [`plan`](fn@plan) checks and costs them
+//! all, [`perform`](fn@perform) runs one, and [`Answer`] holds the results and the best design; [`StudyFolder`] is its
+//! directory. [`Runs`] are some of its runs for another process.
 
 mod answer;
 mod as_it_is;

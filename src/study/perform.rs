@@ -1,4 +1,4 @@
-//! Runs one point of a study, as often as it is repeated, and keeps what was asked for.
+//! Runs one point of a study with its repeats, and stores the requested values.
 
 use super::miss::Miss;
 use super::point::{PlannedPoint, Scene};
@@ -22,11 +22,11 @@ pub struct PointResult {
 #[serde(rename_all = "snake_case")]
 pub enum PointOutcome {
     Done {
-        /// What is measured, SI, in the order of [`Study::measured`]; means over the repeats.
+        /// The measured values, SI, in the order of [`Study::measured`]; means over the repeats.
         values: Vec<f64>,
-        /// Standard deviations over the repeats, 0 for one of them.
+        /// Standard deviations over the repeats, 0 for one run.
         deviations: Vec<f64>,
-        /// By how much each constraint is missed in the worst of the runs; `None` where all of them meet it.
+        /// The miss of each constraint in the worst run; `None` if all runs meet it.
         #[serde(default)]
         misses: Vec<Option<Miss>>,
     },
@@ -41,8 +41,8 @@ pub enum PointOutcome {
 pub struct Repeat(Result<OneRun, PointOutcome>);
 
 /// Runs one repeat of a point for a study of the scene, by its name: the scene with these lines edited
-/// ([`PlannedPoint::overrides_of`]). `None` where it has ended early because `asked` became true. The beds of the executor are shared:
-/// of points that pack alike one packs.
+/// ([`PlannedPoint::overrides_of`]). `None` if it ended early because `asked` became true. The beds of the executor are
+/// shared: points with the same packing pack once.
 pub fn perform(
     scene: Scene<'_>,
     study: &str,
@@ -54,14 +54,14 @@ pub fn perform(
 }
 
 impl PointResult {
-    /// The result of all repeats of a point, in their order; the first that failed speaks for it.
+    /// The result of all repeats of a point, in order; if repeats failed, the first failure.
     pub fn from_repeats(point: &PlannedPoint, repeats: &[Repeat]) -> PointResult {
         let runs: Result<Vec<OneRun>, PointOutcome> = repeats.iter().map(|repeat| repeat.0.clone()).collect();
         PointResult { number: point.number, outcome: runs.map_or_else(|failed| failed, |runs| gathered(&runs)) }
     }
 }
 
-/// What one run says: what is measured, and by how much each constraint is missed.
+/// The result of one run: the measured values, and the miss of each constraint.
 type OneRun = (Vec<f64>, Vec<Option<Miss>>);
 
 fn run(
@@ -76,7 +76,7 @@ fn run(
         return Err(failed(mistake));
     }
     let nothing = || fail("there is nothing to run");
-    // places and counts of the point's own track
+    // places and counts refer to the point's own track
     let own = compiled.studies.iter().find(|s| s.name == study).ok_or_else(nothing)?;
     let scenario = compiled.scenario.as_ref().ok_or_else(nothing)?;
     let graph = compiled.runnable().ok_or_else(nothing)?;
@@ -95,7 +95,7 @@ fn run(
     answered(own, tables.view(&histories, &scalars, &scenario.track, &graph.supports)).map(Some)
 }
 
-/// What a study asks of the tables of a run.
+/// The values that a study needs from the tables of a run.
 fn answered(study: &Study, view: Tables<'_>) -> Result<OneRun, PointOutcome> {
     let value = |text: &str, expression: &Expression| {
         results::evaluate(expression, view).map_err(|why| fail(&format!("`{text}`: {why}")))

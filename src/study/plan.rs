@@ -1,5 +1,5 @@
-//! The points of a study before the first one runs: each is the scene with some lines edited, checked and costed like any
-//! other. What stands against points is said once, with how many it concerns and the values of the first.
+//! The points of a study before the first run: each is the scene with some lines edited, checked and with its cost. A
+//! diagnostic of several points is reported once, with their number and the values of the first.
 
 use super::as_it_is::AsItIs;
 use super::design::{Level, design};
@@ -21,11 +21,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 #[derive(Debug)]
 pub struct Plan {
     pub study: Study,
-    /// The scene as it is first, where it can run; then the points of the design in their order.
+    /// The scene as it is first, if it can run; then the points of the design in order.
     pub points: Vec<PlannedPoint>,
     /// Points of the design that break a condition.
     pub left_out: usize,
-    /// What stands against the study, over the sources of the scene itself.
+    /// Diagnostics of the study, in the sources of the scene itself.
     pub diagnostics: Vec<Diagnostic>,
 }
 
@@ -45,7 +45,7 @@ impl Plan {
         self.points.iter().map(|p| p.seconds).sum::<f64>() * f64::from(self.study.repeats)
     }
 
-    /// The most memory that so many runs at a time take, estimated, bytes.
+    /// The most memory of this number of simultaneous runs, estimated, bytes.
     pub fn bytes(&self, at_a_time: usize) -> u64 {
         let each = self.points.iter().flat_map(|p| (0..self.study.repeats).map(|_| p.bytes));
         let mut each: Vec<u64> = each.collect();
@@ -54,19 +54,19 @@ impl Plan {
     }
 }
 
-/// What became of a point when it was checked.
+/// The result of checking a point.
 enum Checked {
     LeftOut,
     Legal { fingerprint: String, cost: Cost, seed: u64, as_it_is: bool, remarks: Vec<(Diagnostic, Option<Place>)> },
     Illegal(Vec<(Diagnostic, Option<Place>)>),
 }
 
-/// Checks every point. `base` is the scene as it stands, without errors.
+/// Checks every point. `base` is the scene as it is, without errors.
 pub fn plan(scene: Scene<'_>, base: &Compiled, study: &Study) -> Plan {
     plan_told(scene, base, study, &|_, _| {})
 }
 
-/// The same, and tells how many points of all have been checked; from any thread, in any order.
+/// The same, and reports the number of checked points; from any thread, in any order.
 pub fn plan_told(scene: Scene<'_>, base: &Compiled, study: &Study, tell: &(dyn Fn(u64, u64) + Sync)) -> Plan {
     let seed = base.scenario.as_ref().map_or(1, |s| s.solve.seed);
     let points: Vec<(Vec<Level>, Vec<Override>)> = design(study, seed)
@@ -105,7 +105,7 @@ pub fn plan_told(scene: Scene<'_>, base: &Compiled, study: &Study, tell: &(dyn F
     plan.diagnostics = found.told(study, all);
     match as_it_is {
         Ok(as_it_is) => plan.points = with_as_it_is(plan.points, as_it_is.point),
-        // a scene that nobody can run has been told so, and a mistake of all points is told of them
+        // a scene that cannot run has been reported, and a mistake of all points is reported for the points
         Err(_) if base.runnable().is_none() || has_errors(&plan.diagnostics) => {}
         Err(warning) => plan.diagnostics.push(warning),
     }
@@ -114,7 +114,7 @@ pub fn plan_told(scene: Scene<'_>, base: &Compiled, study: &Study, tell: &(dyn F
     plan
 }
 
-/// The points with the scene as it is in front: the first point of the design that is the same, else one more.
+/// The points with the scene as it is in front: the equal point of the design, else an additional point.
 fn with_as_it_is(mut points: Vec<PlannedPoint>, as_it_is: PlannedPoint) -> Vec<PlannedPoint> {
     let same = points.iter().position(|point| point.as_it_is).map(|index| points.remove(index));
     points.iter_mut().for_each(|point| point.as_it_is = false);
@@ -138,7 +138,7 @@ fn check(
 ) -> Checked {
     let compiled = scene.compile(overrides);
     let own = compiled.studies.iter().find(|s| s.name == study.name);
-    // a condition may be there against the very mistakes that the point has
+    // a condition may exclude exactly the mistakes of the point
     if own.is_some_and(|s| s.constraints.iter().any(|c| condition(c) == Some(false))) {
         return Checked::LeftOut;
     }
@@ -152,10 +152,10 @@ fn check(
     );
     match (&compiled.scenario, run) {
         (Some(scenario), Some(run)) if errors.is_empty() => {
-            // an edited line may leave what it stood for unused
+            // an edited line may leave an object unused
             let known = |d: &Diagnostic| base.diagnostics.iter().any(|known| known.code == d.code);
             let new = |d: &&Diagnostic| d.code != Code::E0412 && d.code != Code::E0429 && !known(d);
-            // what the scene's own lines do not do is told there, and that of an axis once for all of its values
+            // unused lines of the scene are reported for the scene, and unused lines of an axis once for all its values
             let idle = compiled.diagnostics.iter().filter(|d| d.code == Code::E0429);
             let idle = idle.filter_map(|d| Some((d.clone(), Some(places.of_edits(d)?))));
             let remarks = compiled.diagnostics.iter().filter(new).map(placed).chain(idle).collect();
@@ -164,7 +164,7 @@ fn check(
             Checked::Legal { fingerprint, cost: run.cost, seed: scenario.solve.seed, as_it_is, remarks }
         }
         _ if errors.is_empty() => {
-            // a hole of the scene itself is told there
+            // a hole of the scene itself is reported for the scene
             let told = |d: &&Diagnostic| base.diagnostics.iter().any(|b| (b.code, &b.message) == (d.code, &d.message));
             Checked::Illegal(compiled.diagnostics.iter().filter(|d| !told(d)).map(placed).collect())
         }
@@ -172,7 +172,7 @@ fn check(
     }
 }
 
-/// Budget, and whether anything is left.
+/// Checks the budget, and whether any point is left.
 fn against_the_whole(plan: &Plan, all: usize) -> Option<Diagnostic> {
     let study = &plan.study;
     if plan.left_out == all {
@@ -181,7 +181,7 @@ fn against_the_whole(plan: &Plan, all: usize) -> Option<Diagnostic> {
         return Some(
             Diagnostic::new(Code::E0708, message)
                 .label(broken, "no point is left")
-                .help("take the condition out, or vary further"),
+                .help("remove the condition, or vary over a wider range"),
         );
     }
     let (budget, span) = study.budget?;
@@ -190,18 +190,18 @@ fn against_the_whole(plan: &Plan, all: usize) -> Option<Diagnostic> {
         let hours = |s: f64| number((s / 36.0).round() / 100.0);
         let runs = plan.runs();
         let message = format!(
-            "study `{}` takes about {} h of computing for {runs} runs, more than its {} h",
+            "study `{}` takes about {} h of computing for {runs} runs, more than its budget of {} h",
             study.name,
             hours(seconds),
             hours(budget)
         );
         Diagnostic::new(Code::E0709, message)
             .label(span, "the budget")
-            .help("take fewer points or axles, or raise the budget")
+            .help("use fewer points or axles, or increase the budget")
     })
 }
 
-/// Repeats differ by their seed, which needs a line to stand in.
+/// Repeats differ by their seed, which needs a line in the scene.
 fn without_seed(scene: Scene<'_>, plan: &Plan) -> Option<Diagnostic> {
     let point = plan.points.first().filter(|_| plan.study.repeats > 1)?;
     let compiled = scene.compile(&point.overrides_of(1));
@@ -212,7 +212,7 @@ fn without_seed(scene: Scene<'_>, plan: &Plan) -> Option<Diagnostic> {
     Some(Diagnostic::new(Code::E0705, message).label(plan.study.span, "has `repeats`").maybe_help(help))
 }
 
-/// What a comparison that needs no run says; `None` for the others.
+/// The result of a comparison that needs no run; `None` for other comparisons.
 fn condition(comparison: &Expectation) -> Option<bool> {
     if comparison.operands.iter().any(|e| e.needs_a_run()) {
         return None;

@@ -1,4 +1,4 @@
-//! Runs of a study as plain data, which any process that sees the study's directory can compute.
+//! Runs of a study as plain data, which any process with access to the study's directory can compute.
 
 use super::{PlannedPoint, Repeat};
 use crate::check::Override;
@@ -10,11 +10,11 @@ use std::path::PathBuf;
 pub struct Runs {
     /// The file of the scene.
     pub scene: PathBuf,
-    /// Edits of every run, those of the command line.
+    /// Edits of every run, from the command line.
     pub set: Vec<Override>,
     /// The study by its name in that file.
     pub study: String,
-    /// Where packed beds are kept.
+    /// The folder of packed beds.
     pub cache: Option<PathBuf>,
     pub runs: Vec<TaskRun>,
 }
@@ -22,7 +22,7 @@ pub struct Runs {
 /// One of them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TaskRun {
-    /// What a person calls it: `point 12`.
+    /// Its name in messages: `point 12`.
     pub name: String,
     /// Names it among the pieces of the study.
     pub key: String,
@@ -38,7 +38,7 @@ impl TaskRun {
 }
 
 impl Repeat {
-    /// The run as it is kept.
+    /// The stored run.
     pub fn bytes(&self) -> Result<Vec<u8>, serde_json::Error> {
         serde_json::to_vec_pretty(self).map(|mut text| {
             text.push(b'\n');

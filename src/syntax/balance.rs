@@ -1,22 +1,22 @@
-//! Finds the brackets without a partner, and gives them one where it was most likely meant, so that the grammar
-//! always meets balanced brackets and one forgotten `}` does not swallow the declarations behind it.
+//! Finds brackets without a partner, and adds the partner at its most likely place. The grammar then always reads
+//! balanced brackets, and a forgotten `}` does not hide the declarations behind it.
 //!
-//! A balanced file is left alone. In an unbalanced one three habits of writers tell where a bracket should have
-//! closed: an item starts at column 0, no entry of a list starts with `name =`, and a closing bracket that is first
-//! on its line stands under the line that opened it.
+//! A balanced file is not changed. In an unbalanced file three habits of writers show where a bracket should close: an
+//! item starts at column 0, no entry of a list starts with `name =`, and a closing bracket at the start of a line is
+//! aligned with the line that opened it.
 
 use super::draft::Draft;
 use super::limits;
 use super::token::{Kind, Token, partner};
 use crate::diag::{Code, Diagnostic, Fix};
 
-/// What is known of the end of the line that holds an opening bracket.
+/// The known state at the end of the line of an opening bracket.
 #[derive(Clone, Copy, PartialEq)]
 enum LineEnd {
     NotReached,
-    /// The item goes on in the next line, or only begins there.
+    /// The item continues in the next line, or begins there.
     GoesOn,
-    /// Behind the token that ends here the item could have ended too.
+    /// The item could also have ended behind the token that ends here.
     At(usize),
 }
 
@@ -31,7 +31,7 @@ struct Opener {
     powers: usize,
 }
 
-/// Balances the brackets of a draft, if they can not be trusted; refuses one that nests beyond the bounds.
+/// Balances the brackets of a draft if they do not match; refuses a draft that nests beyond the bounds.
 pub(super) fn balance(draft: &mut Draft, tokens: &[Token], trusting: bool) -> Result<(), Diagnostic> {
     let mut scan = Scan { draft, tokens, trusting, stack: Vec::new(), powers: 0, last: None, indent: 0, line: 0 };
     for i in 0..tokens.len() {
@@ -41,7 +41,7 @@ pub(super) fn balance(draft: &mut Draft, tokens: &[Token], trusting: bool) -> Re
     Ok(())
 }
 
-/// Whether each bracket has its partner and nothing inside one looks like the start of an item for certain.
+/// Whether each bracket has its partner and no token inside brackets certainly starts an item.
 pub(super) fn is_balanced(text: &str, tokens: &[Token]) -> bool {
     let mut stack = Vec::new();
     for (i, token) in tokens.iter().enumerate() {
@@ -99,7 +99,7 @@ fn starts_item(text: &str, tokens: &[Token], i: usize) -> Option<Certainty> {
     }
 }
 
-/// Whether the tokens from here on are `path =`, in whatever spelling.
+/// Whether the tokens from here on are `path =`, in any spelling.
 pub(super) fn starts_field(text: &str, tokens: &[Token], mut i: usize) -> bool {
     while tokens.get(i).is_some_and(|t| t.kind == Kind::Word) {
         match tokens.get(i + 1).map_or("", |t| t.text(text)) {
@@ -113,7 +113,7 @@ pub(super) fn starts_field(text: &str, tokens: &[Token], mut i: usize) -> bool {
 struct Scan<'s, 'a> {
     draft: &'s mut Draft<'a>,
     tokens: &'s [Token],
-    /// The file is balanced: nothing is to be repaired.
+    /// The file is balanced: no repair is needed.
     trusting: bool,
     stack: Vec<Opener>,
     /// `^` in the items around the current place.
@@ -160,7 +160,7 @@ impl Scan<'_, '_> {
         Ok(())
     }
 
-    /// Counts powers of powers: the parser goes one call deeper for each.
+    /// Counts powers of powers, because each needs one more nested call of the parser.
     fn sign(&mut self, token: Token) -> Result<(), Diagnostic> {
         match token.text(self.draft.original) {
             "^" => {
@@ -188,7 +188,7 @@ impl Scan<'_, '_> {
         self.powers -= own.min(self.powers);
     }
 
-    /// Notes where the item around the innermost bracket could have ended.
+    /// Notes the possible end of the item around the innermost bracket.
     fn end_line(&mut self) {
         let (Some(top), Some(last)) = (self.stack.last_mut(), self.last) else { return };
         // Only the line that opened the bracket counts.
@@ -199,7 +199,7 @@ impl Scan<'_, '_> {
         }
     }
 
-    /// Closes what the first token of a line shows to be unclosed.
+    /// Closes brackets that must be closed before the first token of a line.
     fn close_before(&mut self, i: usize) {
         let text = self.draft.original;
         if starts_item(text, self.tokens, i).is_some() {
@@ -219,7 +219,7 @@ impl Scan<'_, '_> {
         }
     }
 
-    /// Whether a `)` follows soon that everything from here on leaves to what is open now.
+    /// Whether a `)` follows soon that closes a bracket that is open now.
     fn is_closed_ahead(&self, i: usize) -> bool {
         let mut open = Vec::new();
         for token in self.tokens[i..].iter().take(200) {
@@ -245,7 +245,7 @@ impl Scan<'_, '_> {
         let above = matching + 1..self.stack.len();
         let mut target = matching;
         if !self.trusting && first_of_line && above.is_empty() && self.stack[matching].indent > self.indent {
-            // It stands under another opening line than that of the innermost bracket.
+            // It is aligned with the opening line of an outer bracket.
             let under = self.stack.iter().rposition(|o| o.bracket == open && o.indent == self.indent);
             target = under.unwrap_or(matching);
         }
@@ -276,7 +276,7 @@ impl Scan<'_, '_> {
             .is_some_and(|t| t.start > 0 && text.as_bytes()[t.start - 1] != b'\n')
     }
 
-    /// A closing bracket of a kind that is not open: the wrong one for an opener on this line, or one too many.
+    /// A closing bracket of a kind that is not open: a wrong bracket for an opener on this line, or an extra bracket.
     fn close_nothing(&mut self, i: usize, bracket: char) {
         let token = self.tokens[i];
         let Some(top) = self.stack.last().filter(|o| o.line == self.line) else {
@@ -297,7 +297,7 @@ impl Scan<'_, '_> {
         if closed_later {
             return self.report_extra(token, bracket);
         }
-        let mistake = Diagnostic::new(Code::E0104, format!("`{open}` closed by `{bracket}`"))
+        let mistake = Diagnostic::new(Code::E0104, format!("`{open}` is closed by `{bracket}`"))
             .label(self.draft.span(token.start, token.end), format!("expected `{right}`"))
             .label(self.draft.span(top.token.start, top.token.end), "opened here")
             .help(format!("write `{right}` instead of `{bracket}`"))
@@ -321,7 +321,8 @@ impl Scan<'_, '_> {
         self.last.map_or(0, |t| t.end)
     }
 
-    /// Arguments and objects that began on their line most likely ended on it; all else ends where the lack shows.
+    /// Arguments and objects that began on their line most likely ended on it; other brackets end where the missing
+    /// bracket is noticed.
     fn likely_end(&self, opener: &Opener) -> usize {
         match opener.line_end {
             LineEnd::At(end) if opener.bracket != '[' => end,
@@ -351,7 +352,7 @@ impl Scan<'_, '_> {
         self.draft.report(mistake);
     }
 
-    /// At the end of the file everything still open is unclosed.
+    /// Reports all brackets that are open at the end of the file.
     fn finish(&mut self) {
         while let Some(opener) = self.stack.pop() {
             let at = self.likely_end(&opener);

@@ -1,5 +1,5 @@
-//! Brackets of the wrong kind, or none: fields in parentheses, items in braces, lists without brackets. Each is told once, with the
-//! text as it should stand.
+//! Brackets of the wrong kind, or missing brackets: fields in parentheses, items in braces, lists without brackets.
+//! Each is reported once, with the right text.
 
 use pest::Parser;
 use pest::iterators::Pair;
@@ -12,7 +12,8 @@ use super::value::Told;
 use crate::diag::{Code, Diagnostic, Fix};
 
 impl<'p> Builder<'p> {
-    /// Whether part of a block only goes on with the list that the field before it, at `before`, began without brackets: `at = -1, -2 m`.
+    /// Whether part of a block only goes on with the list that the field before it, at `before`, began without
+    /// brackets: `at = -1, -2 m`.
     pub fn goes_on(&mut self, before: (usize, usize), part: &Pair<'p, Rule>, field: &mut Field) -> bool {
         let (start, end) = (part.as_span().start(), part.as_span().end());
         let comma = self.text(before.1, start).trim_matches([' ', '\t']) == ",";
@@ -23,7 +24,7 @@ impl<'p> Builder<'p> {
         let text = self.text(start, end);
         let reported = field.value.kind == ValueKind::Error;
         if pair {
-            // `sections = open: 42 m, stiff: 24 m` was told at its first pair
+            // `sections = open: 42 m, stiff: 24 m` was reported at its first pair
             return reported && self.text(before.0, before.1).contains(':');
         }
         if Grammar::parse(Rule::exact_value, text).is_err() {
@@ -34,8 +35,8 @@ impl<'p> Builder<'p> {
             let items = self.items_of_line(start);
             let list = format!("{} = {}", path.trim(), listed(first.trim(), items));
             let last = start + items.trim_end().len();
-            let mistake = Diagnostic::new(Code::E0101, "several values stand in brackets")
-                .label(self.span(start, last), "where a field is expected");
+            let mistake = Diagnostic::new(Code::E0101, "several values need brackets")
+                .label(self.span(start, last), "a field is expected here");
             let whole = self.span(before.0, last);
             self.report(mistake.write(whole, list));
         }
@@ -43,7 +44,7 @@ impl<'p> Builder<'p> {
         true
     }
 
-    /// The items from here to the end of the line or of the bracket around, as far as none is a field.
+    /// The items from here to the end of the line or of the surrounding bracket, up to the first field.
     pub fn items_of_line(&self, start: usize) -> &'p str {
         let text: &'p str = &self.prepared.text;
         let (mut depth, mut at, mut end, mut item) = (0, start, start, start);
@@ -63,7 +64,7 @@ impl<'p> Builder<'p> {
         &text[start..end]
     }
 
-    /// Reports braces around items that are no fields: `{-20, -5} sleepers`, `geometric{4 axles, 0.2}`, `{k}`.
+    /// Reports braces around items that are not fields: `{-20, -5} sleepers`, `geometric{4 axles, 0.2}`, `{k}`.
     pub fn holds_items(&mut self, object: &Pair<'p, Rule>) -> bool {
         let Some(block) = object.clone().into_inner().find(|p| p.as_rule() == Rule::block) else { return false };
         let mut items = block.clone().into_inner().filter(|p| p.as_rule() != Rule::close_brace).peekable();
@@ -82,10 +83,10 @@ impl<'p> Builder<'p> {
         let (message, written, place) = match base {
             Some(word) => {
                 let written = format!("{}({inner})", word.as_str());
-                ("the arguments of a word stand in parentheses", written, self.span_of(&word).to(at))
+                ("the arguments of a word need parentheses", written, self.span_of(&word).to(at))
             }
             None if pairs && inner.starts_with('"') => (
-                "names stand without quotes, and fields are given with `=`",
+                "names have no quotes, and fields are given with `=`",
                 format!("{{ {} }}", inner.replace("\": ", " = ").replace('"', "")),
                 at,
             ),
@@ -106,7 +107,7 @@ impl<'p> Builder<'p> {
         let whole = group.as_str();
         let inner = first_line(whole.trim_start_matches('(').trim_start()).trim_end_matches(')').trim_end();
         let close = if whole.contains('\n') { "" } else { " }" };
-        let mistake = Diagnostic::new(Code::E0105, "fields stand in braces").label(span, "");
+        let mistake = Diagnostic::new(Code::E0105, "fields need braces").label(span, "");
         let fix = Fix::replace(span, format!("{{ {inner} }}"));
         self.report(mistake.help(format!("write `{{ {inner}{close}`")).maybe_fix((!close.is_empty()).then_some(fix)));
         let mut told = Told { equals: true, colon: false };
@@ -144,7 +145,7 @@ impl<'p> Builder<'p> {
     }
 }
 
-/// The two halves of an entry that is `(key, value)`, and the pair as it should stand.
+/// The two halves of an entry that is `(key, value)`, and the right pair.
 fn in_group<'p>(entry: &Pair<'p, Rule>) -> Option<(Vec<Pair<'p, Rule>>, String)> {
     let mut pair = entry.clone();
     while pair.as_rule() != Rule::group {
@@ -159,7 +160,8 @@ fn in_group<'p>(entry: &Pair<'p, Rule>) -> Option<(Vec<Pair<'p, Rule>>, String)>
     (plain(key) && plain(value)).then_some((halves, written))
 }
 
-/// `[-20, -5] sleepers` of `-20` and `-5 sleepers`: the unit of the last item goes behind the list where the others have none.
+/// `[-20, -5] sleepers` of `-20` and `-5 sleepers`: the unit of the last item is moved behind the list if the others
+/// have none.
 fn listed(first: &str, rest: &str) -> String {
     let items: Vec<&str> = std::iter::once(first).chain(rest.split(',').map(str::trim)).collect();
     let bare = |text: &str| {

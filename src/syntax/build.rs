@@ -1,4 +1,4 @@
-//! Makes the tree from what the grammar matched, and reports each place where a fallback of the grammar did.
+//! Makes the tree from the matches of the grammar, and reports each match of a fallback rule.
 
 use pest::iterators::{Pair, Pairs};
 
@@ -92,10 +92,7 @@ impl<'p> Builder<'p> {
             } else if path.names.len() == 1 {
                 ("a value outside of a declaration needs `let`", format!("write `let {text}`"))
             } else {
-                (
-                    "a field outside of a declaration",
-                    "put it into the braces of the declaration it belongs to".to_owned(),
-                )
+                ("a field outside of a declaration", "put it into the braces of its declaration".to_owned())
             };
             let mistake = Diagnostic::new(Code::E0105, message).label(path.span, "");
             let before = Span { end: path.span.start, ..path.span };
@@ -107,7 +104,7 @@ impl<'p> Builder<'p> {
         Some(Let { name, value, docs, span })
     }
 
-    /// `name = kind { ... }` is the declaration that it was meant for.
+    /// `name = kind { ... }` is read as a declaration.
     fn as_declared(&self, binding: Let) -> Item {
         match binding.value.kind {
             ValueKind::Object { base: Some(Path { mut names, .. }), fields } if names.len() == 1 => {
@@ -125,7 +122,7 @@ impl<'p> Builder<'p> {
         }
     }
 
-    /// `def kind name {`, and `kind name : kind base {`: a word of another language, or one said twice, is passed over.
+    /// `def kind name {`, and `kind name : kind base {`: a word of another language, or a repeated word, is skipped.
     fn word_too_many(&mut self, names: &mut Vec<Name>, base: &mut Option<Path>, junk: &Pair<'p, Rule>) -> bool {
         const OPENERS: [&str; 8] = ["def", "class", "new", "define", "declare", "create", "object", "type"];
         let (start, text) = (junk.as_span().start(), junk.as_str().trim_end());
@@ -150,7 +147,7 @@ impl<'p> Builder<'p> {
             }
             _ => return false,
         };
-        let message = format!("`{}` does not belong into the header of a declaration", extra.text);
+        let message = format!("`{}` is not allowed in the header of a declaration", extra.text);
         self.report(Diagnostic::new(Code::E0105, message).label(extra.span, "").help(help));
         true
     }
@@ -167,7 +164,7 @@ impl<'p> Builder<'p> {
                 Rule::base => base = part.into_inner().next().map(|p| self.path(p)),
                 Rule::missing => {
                     let mistake = Diagnostic::new(Code::E0101, "expected a name after `:`, found `{`");
-                    let (help, place) = ("name what is extended, or remove the `:`", self.span(colon, colon + 1));
+                    let (help, place) = ("write the name of the base, or remove the `:`", self.span(colon, colon + 1));
                     let fix = Fix::replace(place, "").titled("remove the `:`");
                     self.report(mistake.label(place, "").help(help).fix(fix));
                     continue;
@@ -255,7 +252,7 @@ impl<'p> Builder<'p> {
         fields
     }
 
-    /// A field that is there, with a value that nobody knows.
+    /// A given field with an unknown value.
     fn unreadable(&self, path: Path) -> Field {
         let span = path.span;
         Field { path, value: Value { kind: ValueKind::Error, span }, docs: Vec::new(), span }
@@ -315,7 +312,7 @@ impl<'p> Builder<'p> {
                 Rule::name => names.push(self.name(part)),
                 Rule::base => base = part.into_inner().next().map(|p| self.path(p)),
                 Rule::block => {
-                    // Its mistakes are of interest, its fields belong nowhere.
+                    // Its mistakes are reported, but its fields are dropped.
                     self.block(part);
                 }
                 Rule::junk => {
@@ -332,14 +329,14 @@ impl<'p> Builder<'p> {
         let [kind, name] = names.as_slice() else { return };
         let base = base.map_or(String::new(), |b| format!("{} ", b.text()));
         let mistake = Diagnostic::new(Code::E0101, "declaration inside a block")
-            .label(kind.span.to(name.span), "only values nest")
+            .label(kind.span.to(name.span), "a block contains only fields")
             .help(format!("write `{} = {base}{{`, or move the declaration out of the block", kind.text));
         self.report(mistake);
         let path = Path { names: vec![kind.clone()], span: kind.span };
         fields.push(self.unreadable(path));
     }
 
-    /// What stands after `=` or `:`, and whether it could be read; the sign itself is passed over.
+    /// The value after `=` or `:`, and whether it could be read; the sign itself is skipped.
     pub fn given(&mut self, parts: &mut Pairs<'p, Rule>) -> Option<(Value, bool)> {
         let mut part = parts.next()?;
         let mut sign = None;
@@ -355,7 +352,7 @@ impl<'p> Builder<'p> {
                 if !self.prepared.is_poisoned(at, end) {
                     let found = self.found(at);
                     let message = format!("expected a value after `{sign}`, found {found}");
-                    let help = "write a value behind it, or take the line out";
+                    let help = "write a value behind it, or remove the line";
                     let mistake = Diagnostic::new(Code::E0101, message).label(self.span(at.saturating_sub(1), at), "");
                     self.report(mistake.help(help));
                 }
@@ -370,7 +367,7 @@ impl<'p> Builder<'p> {
                 match parts.next() {
                     Some(junk) => {
                         let (junk_start, junk_end) = (junk.as_span().start(), junk.as_span().end());
-                        // a value that is reported takes what hangs on it along
+                        // a reported value includes the text that depends on it
                         if value.kind != ValueKind::Error {
                             self.explain(Rule::exact_value, start, junk_start, junk_end);
                         }
@@ -391,13 +388,13 @@ impl<'p> Builder<'p> {
     pub fn name(&mut self, pair: Pair<'p, Rule>) -> Name {
         let name = Name { text: pair.as_str().to_owned(), span: self.span_of(&pair) };
         if matches!(name.text.as_str(), "use" | "let" | "as" | "per") {
-            let message = format!("`{}` is a word of the language, it cannot be a name", name.text);
+            let message = format!("`{}` is a word of the language and cannot be a name", name.text);
             self.report(Diagnostic::new(Code::E0207, message).label(name.span, "").help("choose another name"));
         }
         name
     }
 
-    /// The `///` lines directly above what starts here, if it is the first on its line.
+    /// The `///` lines directly above the item that starts here, if it is the first on its line.
     fn docs(&self, start: usize) -> Vec<String> {
         let text = &self.prepared.text;
         let mut line = text[..start].trim_end_matches([' ', '\t', '\r', ',']).len();
@@ -409,7 +406,7 @@ impl<'p> Builder<'p> {
             let above = text[..line - 1].rfind('\n').map_or(0, |i| i + 1);
             let content = text[above..line].trim();
             match content.strip_prefix("///") {
-                // Of a line of commas nothing is left but the line break, which ends no comment.
+                // A line of commas leaves only its line break, which does not end a comment.
                 None if !content.is_empty() && content.trim_start_matches([',', ' ', '\t']).is_empty() => {}
                 Some(doc) if !doc.starts_with('/') => docs.push(doc.trim().to_owned()),
                 _ => break,

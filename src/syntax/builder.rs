@@ -1,4 +1,4 @@
-//! What makes the tree: the prepared text, and the mistakes found so far.
+//! The builder of the tree: the prepared text, and the mistakes found so far.
 
 use pest::iterators::Pair;
 

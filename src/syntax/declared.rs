@@ -1,5 +1,5 @@
-//! Headers of declarations in the manner of other languages, where they show on one line: `train "ore" {`, `train.ore {`,
-//! `trackform stiff(open) {`, `train(speed = 70 km/h)`. Each is told once and becomes what was meant.
+//! Headers of declarations in the spelling of other languages, on one line: `train "ore" {`, `train.ore {`,
+//! `trackform stiff(open) {`, `train(speed = 70 km/h)`. Each is reported once and replaced by the right header.
 
 use super::draft::Draft;
 use super::token::{Kind, Token};
@@ -8,7 +8,7 @@ use crate::diag::{Code, Diagnostic, Fix};
 const EXTENDS: [&str; 6] = ["extends", "inherits", "from", "is", "based_on", "of"];
 
 pub(super) fn mend(draft: &mut Draft, tokens: &mut [Token]) {
-    // brackets that are open: a field may begin its line too, where nobody has laid out the text
+    // open brackets: in unformatted text a field may also begin its line
     let mut depth = 0_usize;
     for i in 0..tokens.len() {
         match tokens[i].kind {
@@ -41,7 +41,7 @@ fn header(draft: &mut Draft, tokens: &mut [Token], i: usize) {
     let words: Vec<&str> = head.iter().map(|t| t.text(text)).collect();
     let kind = words[0];
     const W: Kind = Kind::Word;
-    // what is written over the tokens behind the kind, and the header as it should stand
+    // the text to write over the tokens behind the kind, and the right header
     let (over, written): (Vec<(usize, String)>, String) = match (kinds.as_slice(), words.as_slice()) {
         ([W, Kind::Text { closed: true }], [_, name]) => {
             let inner = name.trim_matches('"');
@@ -111,12 +111,12 @@ fn arguments(draft: &mut Draft, tokens: &mut [Token], i: usize, end: usize) {
         true => format!("{} {}", sign(kind), sign(i)),
         false => sign(i).to_owned(),
     };
-    let mistake = Diagnostic::new(Code::E0105, "the fields of a declaration stand in braces");
+    let mistake = Diagnostic::new(Code::E0105, "the fields of a declaration need braces");
     let at = draft.span(tokens[open].start, tokens[open].end);
     let whole = draft.span(tokens[i].start, tokens[close].end);
     draft.report(mistake.label(at, "").write(whole, format!("{header} {{ {fields} }}")));
     if named {
-        // the two names change places: both are words, and the places of blanks mean nothing
+        // the two names are swapped: both are words, and blanks have no meaning
         let (name, kind_text) = (sign(i).to_owned(), sign(kind).to_owned());
         let whole = Token { start: tokens[i].start, end: tokens[kind].end, ..tokens[i] };
         draft.overwrite(&whole, &format!("{kind_text} {name}"));
@@ -136,9 +136,9 @@ fn digit_first(draft: &mut Draft, tokens: &mut [Token], i: usize, before: &str) 
         return;
     }
     let (digits, letters) = (number.text(text), word.text(text));
-    let mistake = Diagnostic::new(Code::E0101, format!("a name begins with a letter, not with `{digits}`"));
+    let mistake = Diagnostic::new(Code::E0101, format!("a name must begin with a letter, not with `{digits}`"));
     let at = draft.span(number.start, word.end);
-    let help = format!("a name begins with a letter: write `{before}{letters}{digits}`");
+    let help = format!("write `{before}{letters}{digits}`");
     draft.report(mistake.label(at, "").help(help).fix(Fix::replace(at, format!("{letters}{digits}"))));
     draft.overwrite(&number, "");
     tokens[i].kind = Kind::Comment;

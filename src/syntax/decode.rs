@@ -2,7 +2,7 @@
 
 use crate::diag::{Code, Diagnostic};
 
-/// The text of a file, without a byte order mark; or why it is not one.
+/// The text of a file, without a byte order mark; or the reason why it is not text.
 pub fn decode(name: &str, bytes: &[u8]) -> Result<String, Diagnostic> {
     let refused = |offset: usize, why: String| {
         let line = bytes[..offset].iter().filter(|b| **b == b'\n').count() + 1;

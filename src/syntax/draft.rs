@@ -1,4 +1,4 @@
-//! A text while it is made ready for the grammar.
+//! A text that is being prepared for the grammar.
 
 use std::collections::BTreeSet;
 
@@ -6,14 +6,14 @@ use super::limits;
 use super::token::Token;
 use crate::diag::{Diagnostic, FileId, Span};
 
-/// A text on its way: what has been written over it and put into it so far.
+/// A text during preparation, with the replacements and insertions so far.
 pub(super) struct Draft<'a> {
     pub file: FileId,
     pub original: &'a str,
     pub bytes: Vec<u8>,
     /// Brackets to put in, each before the byte at its offset.
     pub insertions: Vec<(usize, char)>,
-    /// Where a value stands that is already reported.
+    /// Places of values that are already reported.
     pub poisoned: BTreeSet<usize>,
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -42,7 +42,7 @@ impl Draft<'_> {
         part.split_whitespace().collect::<Vec<_>>().join(" ")
     }
 
-    /// Writes `new` over a token and blanks what is left of it, line breaks excepted.
+    /// Writes `new` over a token and replaces the rest of the token by blanks, except line breaks.
     pub fn overwrite(&mut self, token: &Token, new: &str) {
         for (i, byte) in self.bytes[token.start..token.end].iter_mut().enumerate() {
             match new.as_bytes().get(i) {

@@ -1,5 +1,5 @@
-//! Finds words for what could not be read: the part is parsed again alone with the exact rule, and where that fails
-//! stands the mistake.
+//! Explains text that could not be read: the part is parsed again alone with the exact rule; the mistake is at the
+//! place where this fails.
 
 use pest::Parser;
 use pest::error::{Error, ErrorVariant, InputLocation};
@@ -11,16 +11,16 @@ use super::token::{self, Kind, Token};
 use super::tree::{Name, Path};
 use crate::diag::{Code, Diagnostic, Fix};
 
-/// What to do about an unreadable part.
+/// Help for an unreadable part.
 enum Way {
     Say(String),
-    /// Why, and what to write in the place of its first line.
+    /// The reason, and the text to write instead of its first line.
     Write(&'static str, String),
 }
 
-/// What an unreadable part turned out to be.
+/// The kind of an unreadable part.
 pub(super) enum Explained {
-    /// The rest of a number that was cut at its decimal comma: the value before it is not to be trusted.
+    /// The rest of a number that was cut at its decimal comma: the value before it is wrong.
     DecimalComma,
     /// Something else, perhaps with a path in front that names a field.
     Other(Option<Path>),
@@ -31,7 +31,7 @@ impl<'p> Builder<'p> {
         self.explain(rule, pair.as_span().start(), pair.as_span().start(), pair.as_span().end())
     }
 
-    /// Reports why the text from `start` to `end` is not what `exact` reads; everything before `junk` is fine.
+    /// Reports why the rule `exact` cannot read the text from `start` to `end`; everything before `junk` is right.
     pub fn explain(&mut self, exact: Rule, start: usize, junk: usize, end: usize) -> Explained {
         let text: &'p str = &self.prepared.text;
         let path = self.leading_path(start, end);
@@ -78,7 +78,8 @@ impl<'p> Builder<'p> {
         Explained::Other(path)
     }
 
-    /// A mistake with the way out; one that is an edit takes the place of the first line of the part that begins at `start`.
+    /// A mistake with the way out; one that is an edit takes the place of the first line of the part that begins at
+    /// `start`.
     fn shown(&self, mistake: Diagnostic, way: Option<Way>, start: usize, end: usize) -> Diagnostic {
         match way {
             Some(Way::Say(help)) => mistake.help(help),
@@ -91,7 +92,7 @@ impl<'p> Builder<'p> {
         }
     }
 
-    /// A word with letters that no name has is cut before the first of them; a reader wants to see all of it.
+    /// A word with letters that no name has is cut before the first of them; this shows the whole word.
     fn whole_word(&self, found: Token) -> Token {
         if found.kind != Kind::Word {
             return found;
@@ -107,7 +108,7 @@ impl<'p> Builder<'p> {
         self.report(Diagnostic::new(Code::E0101, message).label(self.span(at, at), ""));
     }
 
-    /// What to write instead, where that can be guessed.
+    /// The text to write instead, if it can be guessed.
     fn way_out(&self, exact: Rule, start: usize, junk: usize, end: usize, found: Option<Token>) -> Option<Way> {
         let text: &'p str = &self.prepared.text;
         let part = first_line(&text[start..end]);
@@ -126,14 +127,14 @@ impl<'p> Builder<'p> {
             return say("`=` gives a value, `<=` and `>=` compare");
         }
         if first && found.is_some_and(|t| t.start == start) && opens(word) {
-            return say(&format!("a line goes on behind an operator: end the line above with `{word}`"));
+            return say(&format!("a line continues after an operator: end the line above with `{word}`"));
         }
         if word == "." {
-            return say("the factors of a unit are parted by a blank: `kN s/m`");
+            return say("separate the factors of a unit by a blank: `kN s/m`");
         }
         let mut before = text[start..found.map_or(end, |t| t.start)].split_whitespace().rev();
         if let (Some(half), Some("per")) = (before.next(), before.next()) {
-            return say(&format!("behind `per` stands one word: not `{half} {word}`, but such as `seat` or `sleeper`"));
+            return say(&format!("`per` takes one word: not `{half} {word}`, but for example `seat` or `sleeper`"));
         }
         match exact {
             Rule::exact_entry => {
@@ -150,12 +151,12 @@ impl<'p> Builder<'p> {
                 pair.then(|| Way::Write("", format!("{key}: {rest}")))
             }
             Rule::exact_field if matches!(first_word(part), "let" | "use") => {
-                say(&format!("`{}` stands outside of braces", first_word(part)))
+                say(&format!("put `{}` outside of braces", first_word(part)))
             }
             Rule::exact_field => {
                 let path = leading(part);
                 let rest = part[path.len()..].trim_start();
-                // two words before the sign are one name
+                // two words before the sign are taken as one name
                 let second = leading(rest);
                 let after = rest[second.len()..].trim_start();
                 if !path.is_empty() && !second.is_empty() && after.starts_with('=') && !after.starts_with("==") {
@@ -189,7 +190,7 @@ impl<'p> Builder<'p> {
         }
     }
 
-    /// The field that a value has run into for want of a comma: `a = 1 m b = 2`, with the junk from the second `=`.
+    /// The field behind a value without a comma between them: `a = 1 m b = 2`, with the junk from the second `=`.
     pub fn swallowed(&self, junk: usize) -> Option<Path> {
         let text = &self.prepared.text;
         if !text[junk..].starts_with('=') || text[junk..].starts_with("==") {
@@ -217,7 +218,7 @@ impl<'p> Builder<'p> {
         Path { names, span: self.span(start, start + path.len()) }
     }
 
-    /// Where the number starts whose decimals start at `at`, behind a comma without a blank.
+    /// The start of the number whose decimals start at `at`, behind a comma without a blank.
     pub fn decimal_comma(&self, at: usize) -> Option<usize> {
         let text = &self.prepared.text;
         let whole = text[..at].strip_suffix(',')?;
@@ -237,14 +238,14 @@ impl<'p> Builder<'p> {
         let (whole, decimals) = (&self.prepared.text[start..at - 1], first_line(self.text(at, end)));
         let digits = decimals.find(|c: char| !c.is_ascii_digit()).unwrap_or(decimals.len());
         let place = self.span(start, at + decimals.len());
-        let mistake = Diagnostic::new(Code::E0105, "a decimal comma").label(place, "a comma parts items");
+        let mistake = Diagnostic::new(Code::E0105, "a decimal comma").label(place, "a comma separates items");
         let mistake = if whole.contains('.') {
             mistake.write(place, format!("{}.{decimals}", whole.replace('.', "")))
         } else if decimals[digits..].starts_with('.') {
             mistake.write(place, format!("{whole}{decimals}"))
         } else if digits == 3 {
             let (point, thousands) = (format!("{whole}.{decimals}"), format!("{whole}_{decimals}"));
-            let help = format!("write `{point}`, or `{thousands}` where the comma parts thousands");
+            let help = format!("write `{point}`, or `{thousands}` if the comma separates thousands");
             mistake.help(help).fix(Fix::replace(place, point)).fix(Fix::replace(place, thousands))
         } else {
             mistake.write(place, format!("{whole}.{decimals}"))
@@ -259,7 +260,7 @@ impl<'p> Builder<'p> {
         at
     }
 
-    /// What stands at an offset, in words.
+    /// The token at an offset, in words.
     pub fn found(&self, at: usize) -> String {
         let text = &self.prepared.text;
         match token::next(text, self.past_trivia(at)) {
@@ -307,7 +308,7 @@ fn offset(error: &Error<Rule>) -> usize {
     }
 }
 
-/// What could have stood there, from the loosest to the tightest.
+/// The parts that are allowed there, from the loosest to the tightest.
 fn expected(error: &Error<Rule>) -> Vec<&'static str> {
     let ErrorVariant::ParsingError { positives, .. } = &error.variant else { return Vec::new() };
     const WORDS: [(&str, &[Rule]); 10] = [
@@ -358,7 +359,7 @@ fn expected(error: &Error<Rule>) -> Vec<&'static str> {
 
 fn message(expected: &[&str], found: &str) -> String {
     match expected {
-        [] => format!("{found} cannot stand here"),
+        [] => format!("{found} is not allowed here"),
         [only] => format!("expected {only}, found {found}"),
         [first @ .., last] => format!("expected {} or {last}, found {found}", first.join(", ")),
     }

@@ -1,21 +1,21 @@
-//! Signs of other languages and of word processors: each is reported with the right form in the user's own words, and
-//! replaced by that form, byte for byte of the same length, so that the parser goes on as if it had stood there.
+//! Signs of other languages and of word processors: each is reported with the right form of the user's text, and
+//! replaced by that form with the same number of bytes, so that the parser continues with the right form.
 //!
-//! Only signs that are never right are dealt with here; what is wrong by its place alone is left to the grammar.
+//! This module handles only signs that are never right; the grammar reports signs at a wrong place.
 
 use super::draft::Draft;
 use super::token::{Kind, Token};
 use crate::diag::{Code, Diagnostic, Edit, Fix};
 
-/// Signs that look like ours.
+/// Signs that look like signs of this language.
 const LOOK_ALIKES: [(&str, &str); 9] =
     [("−", "-"), ("–", "-"), ("—", "-"), ("≤", "<="), ("≥", ">="), ("×", "*"), ("÷", "/"), ("…", ".."), ("∙", "*")];
 
-/// Reports and replaces the foreign signs of a text. Where its brackets are not balanced, only those opened on the same
-/// line tell what a sign stands in.
+/// Reports and replaces the foreign signs of a text. If its brackets are not balanced, only brackets opened on the same
+/// line show the context of a sign.
 pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
     let mut brackets = Vec::new();
-    // a habit shows all along a line, and is told once
+    // a habit repeats along a line and is reported once
     let mut told: Vec<&str> = Vec::new();
     for (i, token) in tokens.iter().enumerate() {
         let text = token.text(draft.original);
@@ -110,7 +110,7 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
     }
 }
 
-/// Whether a sign stands behind a name in a line that begins at column 0.
+/// Whether a sign follows a name in a line that begins at column 0.
 fn in_header(text: &str, tokens: &[Token], i: usize) -> bool {
     let line = text[..tokens[i].start].rfind('\n').map_or(0, |n| n + 1);
     let header = &text[line..tokens[i].start];
@@ -121,7 +121,7 @@ fn in_header(text: &str, tokens: &[Token], i: usize) -> bool {
         && !header.starts_with("use ")
 }
 
-/// Whether a sign stands between two numbers, the first perhaps with its unit.
+/// Whether a sign is between two numbers, the first perhaps with its unit.
 fn between_ends(text: &str, tokens: &[Token], i: usize) -> bool {
     let number = |token: Option<&Token>| token.is_some_and(|t| t.kind == Kind::Number);
     let signed =
@@ -130,7 +130,7 @@ fn between_ends(text: &str, tokens: &[Token], i: usize) -> bool {
     behind && (number(tokens.get(i + 1)) || signed)
 }
 
-/// What stands for a foreign sign, inside this bracket.
+/// The replacement of a foreign sign inside this bracket.
 fn replacement(sign: &str, bracket: Option<&char>) -> &'static str {
     match sign {
         ";" => ",",
@@ -140,7 +140,7 @@ fn replacement(sign: &str, bracket: Option<&char>) -> &'static str {
     }
 }
 
-/// The brackets around a token and what is in them, with the unit behind, where they begin and end on its line.
+/// The brackets around a token with their content and the unit behind, if they begin and end on its line.
 fn bracket_around<'t>(text: &'t str, tokens: &[Token], i: usize) -> Option<&'t str> {
     let mut depth = 0;
     let mut first = i;
@@ -173,13 +173,13 @@ fn report(draft: &mut Draft, token: &Token, message: impl Into<String>, help: St
     draft.report(mistake.maybe_fix(fix));
 }
 
-/// Reports a token in the place of which something else is to be written.
+/// Reports a token that must be replaced by another text.
 fn mend(draft: &mut Draft, token: &Token, message: impl Into<String>, help: String, text: &str) {
     let fix = Fix::replace(draft.span(token.start, token.end), text);
     report(draft, token, message, help, Some(fix));
 }
 
-/// Writes a sign in the place of one, and of all of its kind behind it on the line, which are told with it.
+/// Replaces a sign, and all equal signs behind it on the line, which are reported with it.
 fn alike(draft: &Draft, tokens: &[Token], i: usize, sign: &str) -> Fix {
     let wrong = tokens[i].text(draft.original);
     let line = tokens[i..].iter().take_while(|token| token.kind != Kind::LineBreak);
@@ -221,10 +221,10 @@ fn odd_text(draft: &mut Draft, token: &Token) {
         draft.overwrite(token, &right);
     }
     let right = format!("\"{}\"", inner.replace('\\', "\\\\").replace('"', "\\\""));
-    mend(draft, token, "text stands in double quotes", format!("write `{right}`"), &right);
+    mend(draft, token, "text needs double quotes", format!("write `{right}`"), &right);
 }
 
-/// Signs of a keyboard for Chinese or Japanese, with the blank that we put behind them.
+/// Signs of a Chinese or Japanese keyboard, with the blank that follows them.
 const WIDE: [(&str, &str); 12] = [
     ("＝", "= "),
     ("：", ": "),
@@ -240,7 +240,7 @@ const WIDE: [(&str, &str); 12] = [
     ("＞", "> "),
 ];
 
-/// A wide sign is told once a line, with the line as it should stand.
+/// A wide sign is reported once per line, with the right line.
 fn wide(draft: &mut Draft, token: &Token, known: &mut Vec<&str>) -> bool {
     let text = token.text(draft.original);
     let Some((_, right)) = WIDE.iter().find(|(wide, _)| *wide == text) else { return false };
@@ -276,7 +276,7 @@ fn look_alike(draft: &mut Draft, tokens: &[Token], i: usize) {
     }
 }
 
-/// The part of the item that stands on the token's line, with another sign in the token's place.
+/// The part of the item on the token's line, with another sign instead of the token.
 fn rewritten(text: &str, tokens: &[Token], i: usize, sign: &str) -> String {
     let (first, last) = item_around(text, tokens, i);
     let before = text[tokens[first].start..tokens[i].start].trim_end();

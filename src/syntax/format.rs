@@ -1,7 +1,7 @@
-//! Lays a text out anew: the same tokens, comments included, with the blanks and line breaks of the house.
+//! Formats a text: the same tokens, comments included, with standard blanks and line breaks.
 //!
-//! Where a bracket was broken over lines it stays broken, else it stays on its line; how many items share a line is
-//! the writer's choice. What changes is indentation, blanks, commas at line ends and alignment ([`super::layout`]).
+//! A bracket that is broken over lines stays broken, another bracket stays on its line. The writer chooses the number
+//! of items per line. Only indentation, blanks, commas at line ends and alignment change ([`super::layout`]).
 
 use pest::Parser;
 
@@ -11,7 +11,7 @@ use super::parse::parse;
 use super::token::{Kind, tokens};
 use crate::diag::{Diagnostic, FileId, has_errors};
 
-/// The text in the layout of the house; or what is wrong with it, if it cannot be read. Line ends become `\n`.
+/// The text in standard layout; or its mistakes, if it cannot be read. Line ends become `\n`.
 pub fn format(text: &str) -> Result<String, Vec<Diagnostic>> {
     let (_, diagnostics) = parse(FileId(0), text);
     if has_errors(&diagnostics) {
@@ -23,7 +23,7 @@ pub fn format(text: &str) -> Result<String, Vec<Diagnostic>> {
     Ok(layout::assemble(lines(&split(atoms))))
 }
 
-/// What is moved about: a token, or several that stay together.
+/// A unit of the layout: a token, or several tokens that stay together.
 #[derive(Debug, Clone, PartialEq)]
 enum Atom {
     Word(String),
@@ -34,7 +34,7 @@ enum Atom {
     Close(char),
     Sign(String),
     Comment(String),
-    /// One or more line breaks; `blank` where a line between them was empty.
+    /// One or more line breaks; `blank` if a line between them was empty.
     Break {
         blank: bool,
     },
@@ -49,7 +49,7 @@ impl Atom {
         matches!(self, Atom::Break { .. })
     }
 
-    /// Behind it a line may go on in the next.
+    /// Whether a line may continue after it.
     fn goes_on(&self) -> bool {
         matches!(self, Atom::Sign(s) if !matches!(s.as_str(), "," | "?" | "."))
     }
@@ -77,7 +77,7 @@ fn atoms(text: &str) -> Vec<Atom> {
             Kind::Word => Atom::Word(words),
             Kind::Open(c) => Atom::Open(c),
             Kind::Close(c) => Atom::Close(c),
-            // The foreign kinds are refused before.
+            // Foreign kinds have been refused before.
             _ => Atom::Sign(words),
         };
         let takes_unit = matches!(atom, Atom::Number(_) | Atom::Close(']'));
@@ -94,7 +94,7 @@ fn atoms(text: &str) -> Vec<Atom> {
     out
 }
 
-/// Takes out the line breaks inside an item: behind a sign, and before the `{` of a declaration.
+/// Removes the line breaks inside an item: behind a sign, and before the `{` of a declaration.
 fn join(atoms: &mut Vec<Atom>) {
     let mut depth = 0_usize;
     let mut kept: Vec<Atom> = Vec::with_capacity(atoms.len());
@@ -136,7 +136,7 @@ fn drop_commas(atoms: &mut Vec<Atom>) {
                 continue;
             }
         }
-        // A comma that goes may leave two breaks side by side.
+        // Removing a comma may leave two breaks side by side.
         if let (Atom::Break { blank: second }, Some(Atom::Break { blank: first })) = (&atom, kept.last_mut()) {
             *first |= *second;
             continue;
@@ -146,7 +146,7 @@ fn drop_commas(atoms: &mut Vec<Atom>) {
     *atoms = kept;
 }
 
-/// Puts line breaks inside both brackets of each pair that has one between.
+/// Puts line breaks inside both brackets of each pair that contains a line break.
 fn split(atoms: Vec<Atom>) -> Vec<Atom> {
     let mut broken = vec![false; atoms.len()];
     let mut open = Vec::new();
@@ -196,7 +196,7 @@ fn lines(atoms: &[Atom]) -> Vec<Line> {
     let mut out: Vec<Line> = Vec::new();
     let mut brackets: Vec<Bracket> = Vec::new();
     let mut line = Line::default();
-    // Where the line's own brackets start, and whether its first item may be aligned.
+    // The start of the line's own brackets, and whether its first item may be aligned.
     let mut base = 0;
     let mut previous: Option<&Atom> = None;
     let mut unary = false;
@@ -228,7 +228,7 @@ fn lines(atoms: &[Atom]) -> Vec<Line> {
         let is_unary = matches!(atom, Atom::Sign(s) if s == "-" || s == "+")
             && (first || previous.is_none_or(|p| matches!(p, Atom::Open(_)) || p.is_sign(",") || p.goes_on()));
         if !first && let Some(previous) = previous {
-            // A `^` stands apart on both sides or on none.
+            // A `^` has blanks on both sides or on neither side.
             let apart = previous.is_sign("^") && line.text.ends_with(" ^");
             let tight = unary || !apart && is_tight(previous, atom, brackets.is_empty());
             line.text.push_str(if tight { "" } else { " " });

@@ -1,11 +1,11 @@
-//! What to write instead of a spelling that other languages and spreadsheets have, where it shows at one sign or word.
+//! Help for spellings of other languages and spreadsheets that are found at one sign or word.
 
 use super::builder::Builder;
 use super::grammar::Rule;
 use super::token::{Kind, Token};
 
 impl Builder<'_> {
-    /// The way out for a part that begins at `start` and cannot be read from `found` on.
+    /// Help for a part that begins at `start` and cannot be read from `found` on.
     pub fn habit(&self, exact: Rule, start: usize, part: &str, found: Option<Token>) -> Option<String> {
         let text = &self.prepared.text;
         let found = found?;
@@ -25,32 +25,34 @@ impl Builder<'_> {
         }
         let fixed = match word {
             "and" | "&&" | "&" | "or" if !part.contains(['<', '>', '=']) => {
-                "several values stand in brackets: `[a, b]`"
+                "write several values in brackets: `[a, b]`"
             }
-            "and" | "&&" | "&" => "each comparison stands alone, on its line or behind a comma; `a < x < b` is one too",
-            "or" | "||" => "there is no `or`: write the comparisons that all have to hold",
-            "not" | "!" if before.is_empty() => "there is no `not`: turn the comparison round",
+            "and" | "&&" | "&" => {
+                "write each comparison on its own line or behind a comma; `a < x < b` is one comparison"
+            }
+            "or" | "||" => "there is no `or`: write comparisons that must all hold",
+            "not" | "!" if before.is_empty() => "there is no `not`: reverse the comparison",
             "!=" | "<>" | "<<" => "comparisons are `<`, `<=`, `>` and `>=`",
             "±" => "a value has no tolerance: `random(mean, sd = ...)` scatters along the track, a study varies",
             "~" | "≈" => "write the number alone",
             "⁻" => "a negative power is written `m^-1`",
-            "$" | "@" => "a name stands alone, without a sign before it",
+            "$" | "@" => "write the name without a sign before it",
             "+=" | "<-" | "->" => "a field is given with `=`",
-            "::" => "names are joined by dots: `pads.medium`",
+            "::" => "join names by dots: `pads.medium`",
             "**" => "powers are written `m^3`",
             "*" if before.ends_with('*') => "powers are written `m^3`",
             "<" | ">" if before.ends_with('<') => "comparisons are `<`, `<=`, `>` and `>=`",
-            "with" => "what is extended stands before the braces: `base { field = value }`",
-            "[" if before.ends_with(digit) => "a unit stands without brackets: `40 MN/m`",
-            "[" => "a list is a value of its own: arguments stand in `( )`, the names of a module behind a dot",
+            "with" => "write the base before the braces: `base { field = value }`",
+            "[" if before.ends_with(digit) => "write a unit without brackets: `40 MN/m`",
+            "[" => "a list cannot follow a name: put arguments in `( )`, names of a module behind a dot",
             "." if before.ends_with(digit) && after.starts_with(digit) => "a number has one point",
             "\\" | ".." if after.trim_start_matches(['.', ' ', '\t']).starts_with('\n') => {
-                "a line goes on in the next one behind a comma or an operator: take it away"
+                "a line continues after a comma or an operator: remove this sign"
             }
             "/" if before.ends_with('+') => {
                 "a value has no tolerance: `random(mean, sd = ...)` scatters along the track, a study varies"
             }
-            "." if !after.starts_with(char::is_alphanumeric) => "nothing ends with a point: take it away",
+            "." if !after.starts_with(char::is_alphanumeric) => "remove the point at the end",
             "{" if exact == Rule::exact_field && found.start == start => "one pair of braces is enough",
             _ => "",
         };
@@ -77,20 +79,20 @@ impl Builder<'_> {
         };
         let behind_key = part.split_once(':').map_or("", |(_, text)| text.trim());
         if exact == Rule::exact_entry && plain(behind_key) && behind_key.split_whitespace().count() > 2 {
-            return Some(format!("a text stands in quotes: write `\"{behind_key}\"`"));
+            return Some(format!("a text needs quotes: write `\"{behind_key}\"`"));
         }
         let name = !before.is_empty() && before.chars().all(|c| c.is_ascii_alphanumeric() || "_.".contains(c));
         let named = name && before.starts_with(|c: char| c.is_ascii_alphabetic());
         if exact == Rule::exact_entry && part.contains(['<', '>']) && named {
             return Some(match before {
-                "not" => "there is no `not`: turn the comparison round".to_owned(),
-                "if" | "when" | "assert" | "that" => format!("a comparison stands alone, without `{before}`"),
-                _ => format!("arguments stand in parentheses: `{before}(...)`"),
+                "not" => "there is no `not`: reverse the comparison".to_owned(),
+                "if" | "when" | "assert" | "that" => format!("write the comparison without `{before}`"),
+                _ => format!("put arguments in parentheses: `{before}(...)`"),
             });
         }
         match word {
             "=" if value && named && before.contains('.') => {
-                Some(format!("pairs stand in brackets: write `[{before}: {}]`", rest.trim_start_matches('=').trim()))
+                Some(format!("pairs need brackets: write `[{before}: {}]`", rest.trim_start_matches('=').trim()))
             }
             "=" if value && named => Some(match self.path_before(start) {
                 Some(path) => format!("write `{path}.{before} {rest}`, or `{path} = {{ {before} {rest} }}`"),
@@ -103,12 +105,12 @@ impl Builder<'_> {
                     "from one value to another in steps: `steps({from} .. {to}, by = {step})`, each with its unit"
                 ))
             }
-            ":" if exact == Rule::exact_entry && before.contains(':') => Some("pairs are parted by commas".to_owned()),
+            ":" if exact == Rule::exact_entry && before.contains(':') => Some("separate pairs by commas".to_owned()),
             ":" if value && !before.is_empty() => {
                 let line = self.items_of_line(start);
                 Some(match before.trim_start_matches(['-', '+']).chars().all(|c| c.is_ascii_digit()) {
-                    true => "a span is written `-20 .. -1 sleepers`, several values stand in brackets".to_owned(),
-                    false => format!("pairs stand in brackets: write `[{line}]`"),
+                    true => "a span is written `-20 .. -1 sleepers`, several values are written in brackets".to_owned(),
+                    false => format!("pairs need brackets: write `[{line}]`"),
                 })
             }
             "'" if before.ends_with(digit) && !after.starts_with(digit) => {
@@ -116,36 +118,36 @@ impl Builder<'_> {
                 let metres = crate::units::number(0.3048 * feet);
                 Some(format!("a length in feet? {feet} ft are {metres} m (1 ft = 0.3048 m)"))
             }
-            "'" if before.ends_with(digit) => Some(format!("digits are grouped by `_`: `{before}_{}`", &rest[1..])),
-            "·" | "x" if before.ends_with(digit) => Some("powers of ten stand in the number: `4e7 N/m`".to_owned()),
+            "'" if before.ends_with(digit) => Some(format!("group digits by `_`: `{before}_{}`", &rest[1..])),
+            "·" | "x" if before.ends_with(digit) => Some("write powers of ten in the number: `4e7 N/m`".to_owned()),
             _ if exact == Rule::exact_field => habit_of_field(part),
             _ if !value => None,
             _ if before.starts_with('"') && before.ends_with('"') && before[1..].starts_with(digit) => {
-                Some(format!("numbers stand without quotes: write `{} {rest}`", &before[1..before.len() - 1]))
+                Some(format!("numbers have no quotes: write `{} {rest}`", &before[1..before.len() - 1]))
             }
             _ if before.starts_with('(') && before.ends_with(')') => {
                 let inner = before[1..before.len() - 1].trim();
-                Some(format!("a unit stands behind its number: write `{inner} {rest}`"))
+                Some(format!("a unit follows its number: write `{inner} {rest}`"))
             }
             _ if found.kind == Kind::Number && before.ends_with(" x") => {
-                Some("powers of ten stand in the number: `4e7 N/m`".to_owned())
+                Some("write powers of ten in the number: `4e7 N/m`".to_owned())
             }
             _ if found.kind == Kind::Number
                 && before.chars().all(|c| c.is_ascii_digit() || c == '_')
                 && !before.is_empty() =>
             {
-                Some(format!("digits are grouped by `_`: `{before}_{rest}`"))
+                Some(format!("group digits by `_`: `{before}_{rest}`"))
             }
-            _ if found.kind == Kind::Number && named => {
-                Some(format!("arguments stand in parentheses, `{before}(...)`, fields in braces, `{{ name = value }}`"))
-            }
+            _ if found.kind == Kind::Number && named => Some(format!(
+                "put arguments in parentheses, `{before}(...)`, and fields in braces, `{{ name = value }}`"
+            )),
             _ if found.kind == Kind::Word
                 && before.chars().all(|c| c.is_ascii_digit() || c == '.')
                 && !before.is_empty() =>
             {
-                Some(format!("a product has its sign: `{before} * {rest}`"))
+                Some(format!("a product needs its sign: `{before} * {rest}`"))
             }
-            _ if word == "(" && named => Some(format!("fields stand in braces: `{before} {{ name = value }}`")),
+            _ if word == "(" && named => Some(format!("put fields in braces: `{before} {{ name = value }}`")),
             _ => None,
         }
     }
@@ -158,10 +160,10 @@ impl Builder<'_> {
     }
 }
 
-/// What to write instead of a field whose name or sign is not one.
+/// Help for a field whose name or sign is wrong.
 fn habit_of_field(part: &str) -> Option<String> {
     if part.starts_with('"') {
-        return Some("names stand without quotes, and fields are given with `=`".to_owned());
+        return Some("names have no quotes, and fields are given with `=`".to_owned());
     }
     if let Some(field) = part.strip_prefix("- ") {
         return Some(format!("write `{}`, without the dash", field.trim_start()));
@@ -183,7 +185,7 @@ fn habit_of_field(part: &str) -> Option<String> {
     letters.then(|| format!("a name has no {what}: write `{joined} = {}`", value.trim()))
 }
 
-/// Units in another spelling, and remarks, where they show at one sign.
+/// Help for units in another spelling, and for remarks, that are found at one sign.
 fn unit_or_remark(word: &str, before: &str, rest: &str, after: &str) -> Option<String> {
     let digit = |c: char| c.is_ascii_digit();
     let number = before.starts_with(|c: char| c.is_ascii_digit() || c == '-');
@@ -193,7 +195,7 @@ fn unit_or_remark(word: &str, before: &str, rest: &str, after: &str) -> Option<S
             Some(format!("write `{before}/{}`", rest.trim_start_matches('\\')))
         }
         "." if number && before.ends_with(char::is_alphabetic) && after.starts_with(char::is_alphabetic) => Some(
-            format!("the factors of a unit are parted by a blank: write `{before} {}`", rest.trim_start_matches('.')),
+            format!("separate the factors of a unit by a blank: write `{before} {}`", rest.trim_start_matches('.')),
         ),
         "(" if number && after.starts_with("per ") => {
             Some(format!("write `{before} {}`", rest.trim_start_matches('(').trim_end_matches(')')))
@@ -206,7 +208,7 @@ fn unit_or_remark(word: &str, before: &str, rest: &str, after: &str) -> Option<S
     }
 }
 
-/// Profiles by their names in EN 13674, which begin with a digit, and in the library.
+/// Rail profiles: the names in EN 13674, which begin with a digit, and the names in the library.
 const RAILS: [(&str, &str); 8] = [
     ("60E1", "UIC60"),
     ("60E2", "UIC60"),
@@ -218,7 +220,7 @@ const RAILS: [(&str, &str); 8] = [
     ("60N", "CHN60"),
 ];
 
-/// The name in the library for one that begins with a digit, or that has a blank or a dash.
+/// The name in the library for a name that begins with a digit, or that has a blank or a dash.
 fn library_name(word: &str, before: &str, found: Token) -> Option<String> {
     let ours = |name: &str| RAILS.iter().find(|(theirs, _)| *theirs == name).map(|(_, ours)| *ours);
     if found.kind == Kind::Number && before.ends_with('.') && before.starts_with(|c: char| c.is_ascii_alphabetic()) {

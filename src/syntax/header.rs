@@ -1,12 +1,12 @@
-//! Declarations that open with another sign than `{`, and lists by dashes: spellings whose end is seen only lines later. Each is
-//! reported once, and the text becomes what was meant before its brackets are looked at.
+//! Declarations that open with another sign than `{`, and lists with dashes: spellings that end several lines later.
+//! Each is reported once and replaced by the right text before the brackets are checked.
 
 use super::balance::starts_field;
 use super::draft::Draft;
 use super::token::{Kind, Token};
 use crate::diag::{Code, Diagnostic, Edit, Fix};
 
-/// Mends a draft whose tokens these are. Brackets that it answers for itself are no brackets any more in `tokens`.
+/// Corrects a draft with these tokens. Corrected brackets are no longer brackets in `tokens`.
 pub(super) fn mend(draft: &mut Draft, tokens: &mut [Token]) {
     for i in 0..tokens.len() {
         let token = tokens[i];
@@ -19,7 +19,7 @@ pub(super) fn mend(draft: &mut Draft, tokens: &mut [Token]) {
     }
 }
 
-/// A header from the `i`-th token on that goes on with `(`, `[`, `:` or nothing, where fields follow in the next lines.
+/// A header from the `i`-th token on that continues with `(`, `[`, `:` or nothing, if fields follow in the next lines.
 fn open(draft: &mut Draft, tokens: &mut [Token], i: usize) {
     let text = draft.original;
     let kind = |k: usize| tokens.get(k).map(|t| t.kind);
@@ -43,7 +43,7 @@ fn open(draft: &mut Draft, tokens: &mut [Token], i: usize) {
     let header = text[tokens[i].start..last.end].trim_end();
     let closer = closer(text, tokens, first);
     let message = match sign.filter(|_| bracket || colon) {
-        Some(sign) => format!("`{}` does not open a declaration: its fields stand in braces", sign.text(text)),
+        Some(sign) => format!("`{}` does not open a declaration: its fields need braces", sign.text(text)),
         None => "a declaration without braces around its fields".to_owned(),
     };
     let at = sign.filter(|_| bracket || colon).unwrap_or(last);
@@ -82,14 +82,14 @@ fn open(draft: &mut Draft, tokens: &mut [Token], i: usize) {
     }
 }
 
-/// Where the fields end that begin at `first`: before the next item of the file.
+/// The end of the fields that begin at `first`: before the next item of the file.
 fn end_of_fields(text: &str, tokens: &[Token], first: usize) -> Option<usize> {
     let item = |t: &Token| t.kind == Kind::Word && text.as_bytes()[t.start - 1] == b'\n';
     let end = tokens[first..].iter().position(item).map_or(tokens.len(), |k| first + k);
     tokens[first..end].iter().rev().find(|t| t.kind != Kind::LineBreak && !t.is_comment()).map(|t| t.end)
 }
 
-/// The first token of the line behind these, if nothing else stands on their own.
+/// The first token of the next line, if the line of these tokens ends behind them.
 fn first_of_next_line(tokens: &[Token], from: usize) -> Option<usize> {
     let next = (from..tokens.len()).find(|k| !tokens[*k].is_comment())?;
     let broken = tokens[next].kind == Kind::LineBreak;
@@ -125,7 +125,7 @@ fn dashes(draft: &mut Draft, tokens: &mut [Token], i: usize) {
     let field = text[line..tokens[i].start].trim();
     let field = field.rsplit(['{', ',']).next().unwrap_or(field).trim();
     let at = draft.span(tokens[first].start, tokens[first].end);
-    let mistake = Diagnostic::new(Code::E0105, "a list stands in brackets, not behind dashes").label(at, "");
+    let mistake = Diagnostic::new(Code::E0105, "a list needs brackets, not dashes").label(at, "");
     draft.report(mistake.help(format!("write `{field} = [{}]`", items.join(", "))));
     draft.overwrite(&tokens[i], "=");
     draft.insertions.push((tokens[i].end, '['));

@@ -1,12 +1,13 @@
-//! Layouts without braces, as in YAML, TOML and Pascal: a line that ends with `:`, `=` or `begin`, or a name in brackets, and the fields in the lines
-//! below. Each is told once, where it begins; the text becomes a declaration, or an object, in braces.
+//! Layouts without braces, as in YAML, TOML and Pascal: a line that ends with `:`, `=` or `begin`, or a name in
+//! brackets, and the fields in the lines below. Each is reported once, at its beginning; the text becomes a
+//! declaration, or an object, in braces.
 
 use super::draft::Draft;
 use super::token::{Kind, Token};
 use crate::diag::{Code, Diagnostic};
 
 pub(super) fn mend(draft: &mut Draft, tokens: &mut [Token]) {
-    // inside what has been told nothing is told again
+    // nothing is reported again inside a reported part
     let mut told_until = 0;
     for i in 0..tokens.len() {
         let first = i == 0 || tokens[i - 1].kind == Kind::LineBreak;
@@ -49,7 +50,7 @@ fn section(draft: &mut Draft, tokens: &mut [Token], i: usize, end: usize, quiet:
     let stop = last_token(tokens, last)?;
     if !quiet {
         let at = draft.span(tokens[i].start, tokens[end - 1].end);
-        let mistake = Diagnostic::new(Code::E0105, "a declaration stands in braces").label(at, "its fields follow");
+        let mistake = Diagnostic::new(Code::E0105, "a declaration needs braces").label(at, "its fields follow");
         draft.report(mistake.help(format!("write `{header} {{`, and `}}` behind its last field")));
     }
     for token in &mut tokens[i..end] {
@@ -64,7 +65,7 @@ fn section(draft: &mut Draft, tokens: &mut [Token], i: usize, end: usize, quiet:
     Some(tokens[stop].end)
 }
 
-/// `train ore:` or `pad =` at the end of a line, and fields in the lines below that stand further to the right.
+/// `train ore:` or `pad =` at the end of a line, and fields in the lines below with a larger indent.
 fn block(draft: &mut Draft, tokens: &mut [Token], i: usize, end: usize, quiet: bool) -> Option<usize> {
     let text = draft.original;
     let last = (i..end).rev().find(|k| !tokens[*k].is_comment())?;
@@ -77,7 +78,7 @@ fn block(draft: &mut Draft, tokens: &mut [Token], i: usize, end: usize, quiet: b
     if !tokens[i..last].iter().all(plain) {
         return None;
     }
-    // the words in front are a header at column 0, else the path of one field
+    // at column 0 the words in front are a header, elsewhere the path of one field
     let words = tokens[i..last].windows(2).any(|w| w[0].kind == Kind::Word && w[1].kind == Kind::Word);
     if own > 0 && words || own == 0 && sign == "=" {
         return None;
@@ -115,11 +116,11 @@ fn block(draft: &mut Draft, tokens: &mut [Token], i: usize, end: usize, quiet: b
         let opens = last_token(tokens, *line) == Some(*sign);
         if indent(text, &tokens[*line]) == level && !opens {
             draft.overwrite(&tokens[*sign], "=");
-            // it is a sign like any other now
+            // it is now an ordinary sign
             tokens[*sign].kind = Kind::Comment;
         }
     }
-    // a closing word stands alone in the line behind
+    // a closing word is alone in the next line
     let behind = lines_below(tokens, end).nth(inner.len());
     let closer = behind.filter(|k| begins && tokens[*k].text(text) == "end");
     match closer {

@@ -1,6 +1,6 @@
-//! Lines of laid out text, and what is aligned between them.
+//! Lines of formatted text, and their alignment.
 
-/// One line on its way to the formatted text.
+/// One line of the formatted text.
 #[derive(Debug, Default)]
 pub(super) struct Line {
     pub indent: usize,
@@ -15,7 +15,7 @@ pub(super) struct Line {
     pub fields: bool,
     /// It leaves no bracket open.
     pub complete: bool,
-    /// Where its `=` stands.
+    /// The position of its `=`.
     pub equals: Option<usize>,
 }
 

@@ -1,8 +1,8 @@
-//! From text to a tree, and from text to tidy text.
+//! From text to a tree, and from text to formatted text.
 //!
-//! [`parse`] reads a file whole and reports all its mistakes at once: `token` cuts it; `uses`, `quotes`, `declared`, `indented`,
-//! `header`, `foreign` and `balance` repair it so that `grammar/track.pest` can read it to the end, `build` makes the tree, and `explain` finds words for what
-//! could not be read. [`format()`] lays the tokens out anew.
+//! [`parse`] reads a file whole and reports all its mistakes at once: `token` cuts it; `uses`, `quotes`, `declared`,
+//! `indented`, `header`, `foreign` and `balance` repair it so that `grammar/track.pest` can read it to the end, `build`
+//! makes the tree, and `explain` explains the parts that could not be read. [`format()`] formats the tokens.
 
 mod balance;
 mod brackets;
@@ -33,7 +33,7 @@ pub use format::format;
 pub use parse::parse;
 pub use token::{Kind as TokenKind, Token, tokens};
 
-/// The bounds of the language, for files that no person wrote.
+/// The bounds of the language, for generated files.
 pub mod limits {
     /// Length of a file.
     pub const BYTES: usize = 8 << 20;

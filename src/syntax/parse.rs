@@ -1,4 +1,4 @@
-//! Reads a file whole: one tree, and every mistake of the text.
+//! Reads a whole file: one tree, and every mistake of the text.
 
 use pest::Parser;
 
@@ -9,13 +9,13 @@ use super::prepare::prepare;
 use super::tree::Tree;
 use crate::diag::{self, Code, Diagnostic, FileId};
 
-/// Depths of brackets need a deep stack, and a caller's may be shallow.
+/// Deep brackets need a deep stack; the caller's stack may be small.
 const STACK: usize = 32 << 20;
-/// Deeper than people write, shallow enough for any stack.
+/// Deeper than people write, but safe for any stack.
 const SHALLOW: usize = 12;
 
-/// The tree of a file, and all that is wrong with its text. What could not be read is left out of the tree, or stands
-/// in it as an error value, so that later stages report nothing twice.
+/// The tree of a file, and all mistakes of its text. Unreadable parts are left out of the tree, or are error values in
+/// it, so that later stages report nothing twice.
 pub fn parse(file: FileId, text: &str) -> (Tree, Vec<Diagnostic>) {
     if depth(text) <= SHALLOW {
         return parse_here(file, text);
@@ -50,7 +50,7 @@ fn parse_here(file: FileId, text: &str) -> (Tree, Vec<Diagnostic>) {
     let mut builder = Builder::new(&prepared, &mut diagnostics);
     let items = match Grammar::parse(Rule::file, &prepared.text) {
         Ok(pairs) => builder.file(pairs),
-        // Every item has a way to fail on its own; this is for a grammar that forgot one.
+        // Every item has its own fallback; this handles a rule without a fallback.
         Err(error) => {
             builder.unread(&error);
             Vec::new()

@@ -1,6 +1,6 @@
-//! Makes a text ready for the grammar: bounds are checked, foreign signs replaced and brackets balanced, each
-//! with its diagnostic. The prepared text keeps every offset, but for closing brackets put in, which [`Prepared`]
-//! takes out again when it is asked where something stands.
+//! Prepares a text for the grammar: checks bounds, replaces foreign signs and balances brackets, each with a
+//! diagnostic. The prepared text keeps every offset, except for inserted closing brackets. [`Prepared`] removes these
+//! when it converts a place to the original.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ pub(super) struct Prepared<'a> {
     pub file: FileId,
     source: &'a str,
     pub text: String,
-    /// Where in `text` a bracket was put in, ascending.
+    /// Offsets in `text` of inserted brackets, ascending.
     inserted: Vec<usize>,
     poisoned: BTreeSet<usize>,
 }
@@ -25,7 +25,7 @@ impl Prepared<'_> {
         (offset - self.inserted.partition_point(|i| *i < offset)).min(self.source.len())
     }
 
-    /// The span in the original of a part of `text`: whole characters, also where shorter ones were written over them.
+    /// The span in the original of a part of `text`: whole characters, also if shorter characters have replaced them.
     pub fn span(&self, start: usize, end: usize) -> Span {
         let (mut start, mut end) = (self.original(start), self.original(end));
         while !self.source.is_char_boundary(start) {
@@ -37,24 +37,24 @@ impl Prepared<'_> {
         Span::new(self.file, start, end.max(start))
     }
 
-    /// Whether the bracket at this offset of `text` was put in.
+    /// Whether the bracket at this offset of `text` was inserted.
     pub fn is_inserted(&self, offset: usize) -> bool {
         self.inserted.binary_search(&offset).is_ok()
     }
 
-    /// Whether something between these offsets of `text` is already reported.
+    /// Whether a mistake between these offsets of `text` is already reported.
     pub fn is_poisoned(&self, start: usize, end: usize) -> bool {
         self.poisoned.range(self.original(start)..self.original(end).max(self.original(start) + 1)).next().is_some()
     }
 }
 
-/// A text ready for the grammar, or nothing where it is beyond the bounds; and what was wrong with it.
+/// A text ready for the grammar, or nothing if it is beyond the bounds; and its mistakes.
 pub(super) fn prepare(file: FileId, original: &str) -> (Option<Prepared<'_>>, Vec<Diagnostic>) {
     if original.len() > limits::BYTES {
         let size = original.len() as f64 / f64::from(1 << 20);
-        let mistake = Diagnostic::new(Code::E0103, format!("file of {size:.1} MiB, where 8 MiB are the bound"))
+        let mistake = Diagnostic::new(Code::E0103, format!("the file has {size:.1} MiB, more than the limit of 8 MiB"))
             .label(Span::new(file, 0, 0), "")
-            .help("move part of it to a module, or tables to a `file(\"...\")`");
+            .help("move declarations to a module, or tables to a `file(\"...\")`");
         return (None, vec![mistake]);
     }
     let mut tokens = tokens(original);
@@ -79,7 +79,7 @@ pub(super) fn prepare(file: FileId, original: &str) -> (Option<Prepared<'_>>, Ve
     }
     let Draft { bytes, mut insertions, poisoned, diagnostics, .. } = draft;
     insertions.sort_by_key(|(offset, _)| *offset);
-    // Only whole characters were written over; should that ever fail, the untouched text still gives the mistakes.
+    // Only whole characters were replaced; if this ever fails, the original text still gives the mistakes.
     let replaced = String::from_utf8(bytes).unwrap_or_else(|_| original.to_owned());
     let mut text = String::with_capacity(replaced.len() + insertions.len());
     let mut inserted = Vec::with_capacity(insertions.len());

@@ -1,5 +1,5 @@
-//! Quotes that do not belong together: an opening one that was lost, quotes inside a text, a text over two lines. Each is told once, where
-//! the text begins, and the text is read as one that nobody knows.
+//! Quotes that do not match: a missing opening quote, quotes inside a text, a text over two lines. Each is reported
+//! once, at the start of the text, and the text is read as an unknown value.
 
 use super::draft::Draft;
 use super::token::{Kind, Token};
@@ -18,7 +18,7 @@ pub(super) fn mend(draft: &mut Draft, tokens: &mut [Token]) {
     }
 }
 
-/// `title = Embankment to slab"`: a quote with nothing behind it, after words that stand in none.
+/// `title = Embankment to slab"`: a quote with nothing behind it, after words without quotes.
 fn lost_opening(draft: &mut Draft, tokens: &mut [Token], first: usize, line: usize) {
     let text = draft.original;
     let alone = |t: &Token| t.kind == Kind::Text { closed: false } && t.text(text) == "\"";
@@ -45,7 +45,7 @@ fn inches_of(digits: &str) -> f64 {
     digits.parse().unwrap_or_default()
 }
 
-/// A text that goes on in the next line, where it is closed.
+/// A text that continues in the next line and is closed there.
 fn over_two_lines(draft: &mut Draft, tokens: &mut [Token], first: usize, line: usize) {
     let text = draft.original;
     let Some(open) = (first..line).find(|k| tokens[*k].kind == Kind::Text { closed: false }) else { return };
@@ -62,7 +62,7 @@ fn over_two_lines(draft: &mut Draft, tokens: &mut [Token], first: usize, line: u
     let mistake = Diagnostic::new(Code::E0106, "a text over two lines")
         .label(draft.span(start, tokens[open].end), "it begins here");
     let fix = Fix::replace(draft.span(start, stop), one_line.as_str());
-    draft.report(mistake.help(format!("a text stands on one line: write `{one_line}`")).fix(fix));
+    draft.report(mistake.help(format!("a text must be on one line: write `{one_line}`")).fix(fix));
     poison(draft, tokens, open..open + 1);
     for token in &mut tokens[next..=close] {
         draft.overwrite(token, "");
@@ -104,7 +104,7 @@ fn told(
     poison(draft, tokens, range);
 }
 
-/// Reads tokens as one value that nobody knows.
+/// Reads tokens as one unknown value.
 fn poison(draft: &mut Draft, tokens: &mut [Token], range: std::ops::Range<usize>) {
     for (n, token) in tokens[range].iter_mut().enumerate() {
         draft.overwrite(token, if n == 0 { "?" } else { "" });

@@ -1,7 +1,8 @@
-//! Cuts a text into tokens, comments and line breaks included: for everything that needs no grammar.
+//! Cuts a text into tokens, including comments and line breaks, for tasks that need no grammar.
 //!
-//! `foreign` and `balance` look at a text before it is parsed, `format` lays out one that is known to parse, and an editor
-//! asks what stands at a place of one that is half typed. Every byte belongs to a token or is a blank, and no text is refused.
+//! `foreign` and `balance` check a text before it is parsed, `format` formats a text that can be parsed, and an editor
+//! needs the token at a place in an unfinished text. Every byte belongs to a token or is a blank, and no text is
+//! refused.
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -51,7 +52,7 @@ const PAIRS_OF_SIGNS: [&str; 15] =
 pub fn tokens(text: &str) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::with_capacity(text.len() / 4);
     let mut at = 0;
-    // Where the current line began in `out`: an unclosed text looks back for the brackets opened before it.
+    // The start of the current line in `out`: an unclosed text needs the brackets opened before it.
     let mut line = 0;
     while let Some(token) = next(text, at) {
         let mut end = token.end;
@@ -72,7 +73,7 @@ pub fn tokens(text: &str) -> Vec<Token> {
     out
 }
 
-/// Whether words begin with a sign that begins a comment elsewhere, where no value has that sign.
+/// Whether words follow a sign that begins a comment in other languages and that no value has.
 fn is_foreign_comment(text: &str, token: &Token, before: Option<&Token>) -> bool {
     let rest = &text[token.start..];
     let words = |skip: usize| rest[skip..].trim_start_matches([' ', '\t']).starts_with(char::is_alphabetic);
@@ -140,7 +141,8 @@ fn quoted(rest: &str, close: char, reach: usize) -> Option<usize> {
     None
 }
 
-/// Looking for the partner of an odd quote or comment mark stops here, lest a file full of them takes for ever.
+/// Limit of the search for the partner of a quote or comment mark, so that a file with many marks does not take too
+/// long.
 const TEXT_REACH: usize = 200;
 const COMMENT_REACH: usize = 2000;
 
@@ -164,7 +166,8 @@ fn block_comment_length(rest: &str) -> usize {
     rest[2..reach].find("*/").map_or_else(|| line_length(rest), |i| i + 4)
 }
 
-/// A text without its closing quote ends with the line, but gives back the brackets that the line had opened before it.
+/// A text without its closing quote ends with the line, but closing brackets that the line had opened before it are not
+/// part of it.
 fn unclosed_length(text: &str, line: &[Token]) -> usize {
     let mut open = Vec::new();
     for token in line {
@@ -176,7 +179,7 @@ fn unclosed_length(text: &str, line: &[Token]) -> usize {
             _ => {}
         }
     }
-    // what closes or parts follows a quote whose opening one is lost
+    // a closing or separating sign follows a quote whose opening quote is missing
     if text[1..].trim_start().is_empty() || text[1..].starts_with([')', ']', '}', ',']) {
         return 1;
     }

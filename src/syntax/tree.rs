@@ -1,8 +1,8 @@
-//! The syntax tree: what stands in a file, with the place of every part and no meaning given to any word.
+//! The syntax tree: the parts of a file with their places, without the meaning of words.
 
 use crate::diag::{FileId, Span};
 
-/// One file as read; what could not be read is reported and left out, or stands as [`ValueKind::Error`].
+/// One file as read; unreadable parts are reported and left out, or are [`ValueKind::Error`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tree {
     pub file: FileId,
@@ -17,7 +17,7 @@ pub enum Item {
 }
 
 impl Item {
-    /// The whole of it.
+    /// The whole item.
     pub fn span(&self) -> Span {
         match self {
             Item::Use(used) => used.span,

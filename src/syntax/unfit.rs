@@ -1,9 +1,9 @@
-//! Characters that no terminal, page or picture can show as they are: told where they stand.
+//! Characters that no terminal, page or picture can show: reported at their place.
 
 use super::draft::Draft;
 use crate::diag::{Code, Diagnostic, Edit, Fix, Span};
 
-/// Tells of the first such character, and how many there are.
+/// Reports the first such character, and their number.
 pub(super) fn tell(draft: &mut Draft<'_>) {
     let mut unfit = draft.original.char_indices().filter(|(_, c)| is_unfit(*c));
     let Some((start, first)) = unfit.next() else { return };
@@ -11,7 +11,7 @@ pub(super) fn tell(draft: &mut Draft<'_>) {
         0 => String::new(),
         more => format!(", and {more} more such characters"),
     };
-    let message = format!("the text holds a character that cannot be shown, U+{:04X}{more}", u32::from(first));
+    let message = format!("the text contains a character that cannot be shown, U+{:04X}{more}", u32::from(first));
     let span = Span::new(draft.file, start, start + first.len_utf8());
     let all = draft.original.char_indices().filter(|(_, c)| is_unfit(*c));
     let edits = all.map(|(i, c)| Edit { span: draft.span(i, i + c.len_utf8()), text: String::new() });
@@ -19,7 +19,7 @@ pub(super) fn tell(draft: &mut Draft<'_>) {
     draft.diagnostics.push(Diagnostic::new(Code::E0101, message).label(span, "here").help("take it out").fix(fix));
 }
 
-/// Control characters, signs that turn the direction of what follows, and what is no character.
+/// Control characters, signs that change the direction of text, and code points that are not characters.
 fn is_unfit(c: char) -> bool {
     let is_control = c.is_control() && !matches!(c, '\n' | '\r' | '\t');
     is_control || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{fffe}' | '\u{ffff}')
@@ -38,7 +38,7 @@ mod tests {
             let (_, told) = parse(sources.add("a.track", text.as_str(), false), &text);
             assert_eq!(told.len(), 1, "{told:?}");
             assert_eq!(told[0].code, Code::E0101);
-            let message = format!("the text holds a character that cannot be shown, U+{:04X}", u32::from(unfit));
+            let message = format!("the text contains a character that cannot be shown, U+{:04X}", u32::from(unfit));
             assert_eq!(told[0].message, message);
         }
         let (_, told) = parse(Sources::default().add("a.track", "", false), "// a\tb \u{e4} \u{b5}m\r\n");

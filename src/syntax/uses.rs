@@ -1,5 +1,5 @@
-//! Lines that bring in a module by the path of a file, as other languages do: `use "site.track"`, `use ../site/gravel`. Each is told once,
-//! with the module as it is named here, and read as nothing.
+//! Lines that load a module by the path of a file, as in other languages: `use "site.track"`, `use ../site/gravel`.
+//! Each is reported once, with the right name of the module, and is not read.
 
 use super::draft::Draft;
 use super::token::{Kind, Token};
@@ -41,11 +41,10 @@ fn by_file(draft: &mut Draft, tokens: &mut [Token], i: usize) {
         true => format!("write `use {name}{alias}`: a module lies below the main file's folder, copy it there"),
         false => format!("write `use {name}{alias}`"),
     };
-    let mistake =
-        Diagnostic::new(Code::E0101, "a module is named by names with dots between them, not by the path of a file");
+    let mistake = Diagnostic::new(Code::E0101, "write a module as names joined by dots, not as the path of a file");
     let place = draft.span(start, end);
     let fix = Fix::replace(place, format!("use {name}{alias}"));
-    draft.report(mistake.label(place, "no name of a module").help(help).fix(fix));
+    draft.report(mistake.label(place, "not the name of a module").help(help).fix(fix));
     for token in tokens[i..].iter_mut().take_while(|t| t.start < end) {
         if token.kind == Kind::LineBreak {
             break;

@@ -1,4 +1,4 @@
-//! The part of the tree's making that deals with values: precedence is the grammar's, spans and bounds are ours.
+//! Builds the values of the tree: the grammar gives precedence, this module gives spans and bounds.
 
 use pest::iterators::Pair;
 
@@ -8,18 +8,18 @@ use super::limits;
 use super::tree::{Argument, BinaryOp, Comparison, Entry, UnitText, Value, ValueKind};
 use crate::diag::{Code, Diagnostic, Fix, Span};
 
-/// What has been said of a list or of arguments.
+/// Reports already made on a list or on arguments.
 #[derive(Default)]
 pub(super) struct Told {
-    /// `=` where `:` belongs.
+    /// `=` instead of `:`.
     pub equals: bool,
-    /// `:` where `=` belongs, or no sign where `:` does.
+    /// `:` instead of `=`, or a missing `:`.
     pub colon: bool,
 }
 
 impl<'p> Builder<'p> {
     pub fn value(&mut self, pair: Pair<'p, Rule>) -> Value {
-        // Most values use one level of precedence of seven.
+        // Most values use only one of the seven levels of precedence.
         let mut pair = pair;
         while let Rule::value | Rule::range | Rule::sum | Rule::product | Rule::factor | Rule::power = pair.as_rule() {
             let mut parts = pair.clone().into_inner();
@@ -77,7 +77,7 @@ impl<'p> Builder<'p> {
         Value { kind: ValueKind::Compare { operands, operators }, span }
     }
 
-    /// `a .. b per basis`, either part of it alone too.
+    /// `a .. b per basis`, or only one of the two parts.
     fn range(&mut self, pair: Pair<'p, Rule>) -> Value {
         let (start, mut bounds, mut dots, mut basis) = (pair.as_span().start(), Vec::new(), None, None);
         let mut ends = Vec::new();
@@ -116,14 +116,15 @@ impl<'p> Builder<'p> {
         }
     }
 
-    /// `a + b - c` or `a * b / c`, from the left. The tree is as deep as the chain is long, so its length has a bound.
+    /// `a + b - c` or `a * b / c`, from the left. The depth of the tree grows with the length of the chain, so the
+    /// length has a bound.
     fn chain(&mut self, pair: Pair<'p, Rule>) -> Value {
         let own = pair.clone().into_inner().count() / 2;
         let span = self.span_of(&pair);
         if self.operations + own > limits::OPERATIONS {
             let message = format!("more than {} operations inside each other", limits::OPERATIONS);
             self.report(
-                Diagnostic::new(Code::E0103, message).label(span, "").help("give parts of it names with `let`"),
+                Diagnostic::new(Code::E0103, message).label(span, "").help("give parts of the value names with `let`"),
             );
             return Value { kind: ValueKind::Error, span };
         }
@@ -149,7 +150,7 @@ impl<'p> Builder<'p> {
         left.unwrap_or(Value { kind: ValueKind::Error, span })
     }
 
-    /// A sign in front: `-` makes a negation, `+` says nothing but belongs to the place.
+    /// A sign in front: `-` makes a negation, `+` has no effect but belongs to the place.
     fn signed(&mut self, pair: Pair<'p, Rule>) -> Value {
         let start = self.span(pair.as_span().start(), pair.as_span().start());
         let mut negative = false;
@@ -219,7 +220,7 @@ impl<'p> Builder<'p> {
         }
         let value: f64 = digits.parse().unwrap_or(f64::NAN);
         if !value.is_finite() {
-            let mistake = Diagnostic::new(Code::E0103, "number too large to be held");
+            let mistake = Diagnostic::new(Code::E0103, "number too large");
             self.report(mistake.label(span, "the largest is about 1.8e308"));
             return Value { kind: ValueKind::Error, span };
         }
@@ -280,7 +281,7 @@ impl<'p> Builder<'p> {
         let start = pair.as_span().start();
         let mut span = self.span(start, start);
         let (mut entries, mut unit) = (Vec::<Entry>::new(), None);
-        // a habit shows all along a list, and is told once
+        // a habit repeats along a list and is reported once
         let mut told = Told::default();
         let in_groups = self.pairs_in_groups(&pair);
         for part in pair.into_inner() {
@@ -288,7 +289,7 @@ impl<'p> Builder<'p> {
                 Rule::entry => {
                     let (at, end) = (part.as_span().start(), part.as_span().end());
                     let entry = if in_groups { self.group_as_pair(part) } else { self.entry(part, &mut told) };
-                    // `[soil: 0,3 m]`: a pair, then a bare number that hangs on its comma.
+                    // `[soil: 0,3 m]`: a pair, then a bare number directly behind its comma.
                     if let Some(previous) = entries.last_mut()
                         && previous.key.is_some()
                         && entry.key.is_none()
@@ -436,8 +437,8 @@ impl<'p> Builder<'p> {
         };
         let mistake = Diagnostic::new(Code::E0101, format!("expected one value in parentheses, found {found}"));
         let help = match entries.len() {
-            0 => "write a value between them, or take them out",
-            _ => "lists stand in `[ ]`",
+            0 => "write a value between them, or remove them",
+            _ => "put lists in `[ ]`",
         };
         self.report(mistake.label(span, "").help(help));
         Value { kind: ValueKind::Error, span }

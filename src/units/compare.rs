@@ -2,7 +2,7 @@
 
 use super::Dimension;
 
-/// Two aligned lines that show where `expected` and `found` part:
+/// Two aligned lines that show the different factors of `expected` and `found`:
 ///
 /// ```text
 /// expected  mass    x time^-2   [a stiffness]

@@ -1,4 +1,4 @@
-//! A dimension as exponents of base dimensions, and the names that engineers have for the common ones.
+//! A dimension as exponents of base dimensions, and the engineering names of common dimensions.
 
 use super::parse::parse_unit;
 use std::ops::{Div, Mul};
@@ -37,12 +37,12 @@ impl Dimension {
         Dimension(exponents)
     }
 
-    /// The dimension of `unit`, which the program itself wrote.
+    /// The dimension of `unit`, which is written in the program.
     pub fn of_unit(unit: &str) -> Dimension {
         parse_unit(unit).map_or(Dimension::NONE, |u| u.dimension)
     }
 
-    /// Raised to a power in hundredths; `None` where the exponents leave the range of -9 .. 9.
+    /// Raised to a power in hundredths; `None` if an exponent is outside -9 .. 9.
     pub fn power(self, hundredths: i32) -> Option<Dimension> {
         let mut out = [0; 8];
         for (o, e) in out.iter_mut().zip(self.0) {
@@ -59,12 +59,12 @@ impl Dimension {
         self == Dimension::NONE
     }
 
-    /// Name and exponent (in hundredths) of every base that takes part.
+    /// Name and exponent (in hundredths) of every base with a non-zero exponent.
     pub(super) fn factors(self) -> impl Iterator<Item = (&'static str, i16)> {
         BASES.iter().zip(self.0).filter(|(_, e)| *e != 0).map(|((name, _), e)| (*name, e))
     }
 
-    /// What engineers call it, with a usual unit; `None` for an unnamed combination.
+    /// Its engineering name, with a usual unit; `None` for a combination without a name.
     pub fn name(self) -> Option<&'static str> {
         NAMED.iter().find(|(_, unit)| Dimension::of_unit(unit) == self).map(|(name, _)| *name)
     }
@@ -90,7 +90,7 @@ impl Dimension {
         if under.is_empty() { over } else { format!("{over}/{}", under.join("/")) }
     }
 
-    /// `stiffness`, else the SI unit in words that fit into a sentence.
+    /// `a stiffness`, else the SI unit as words for a sentence.
     pub fn describe(self) -> String {
         if self.is_none() {
             return "a plain number".into();

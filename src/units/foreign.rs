@@ -1,6 +1,6 @@
-//! Units as other languages, other systems and other keyboards spell them, and what they are here.
+//! Units in the spelling of other languages, systems and keyboards, with the units of this program.
 
-/// Spellings in lower case, and ours; with parentheses where it is not the same size.
+/// Spellings in lower case, with our unit; with parentheses if it has another size.
 pub(super) const FOREIGN: &[(&str, &str)] = &[
     // masses and forces
     ("tonne", "t"),

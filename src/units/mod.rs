@@ -1,7 +1,7 @@
-//! Dimensions, units and quantities: what `40 MN/m` means, and how to say that something else was expected.
+//! Dimensions, units and quantities: the meaning of `40 MN/m`, and messages on a wrong dimension.
 //!
 //! All arithmetic is in SI. A count (axles, sleepers, cycles), an angle and an amount of data are dimensions of their
-//! own, so that none of them passes for a plain number.
+//! own, so that none of them is taken as a plain number.
 
 mod compare;
 mod dimension;
@@ -26,7 +26,7 @@ impl Quantity {
         Quantity { value, dimension }
     }
 
-    /// The value and a unit as a person would write them: `unit` where it fits, else SI.
+    /// The value and a unit as text: `unit` if it fits, else SI.
     pub fn show(self, unit: &str) -> String {
         match parse_unit(unit) {
             Ok(u) if u.dimension == self.dimension => join(self.value / u.factor, unit),

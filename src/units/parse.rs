@@ -12,10 +12,10 @@ pub struct Unit {
     pub dimension: Dimension,
 }
 
-/// Why a text is no unit.
+/// The reason why a text is not a unit.
 #[derive(Debug, Clone, PartialEq)]
 pub enum UnitError {
-    /// `symbol` is not known; `instead` is what was probably meant.
+    /// `symbol` is not known; `instead` is the probable unit.
     Unknown { symbol: String, instead: Option<String> },
     /// An exponent beyond -9 .. 9, or one that is not a hundredth.
     Exponent,
@@ -130,7 +130,7 @@ impl Reader<'_> {
         Ok(Unit { factor: base.factor.powf(f64::from(hundredths) / 100.0), dimension })
     }
 
-    /// `^2`, `^-1`, `^1.5`, `²` or `³`, in hundredths; 100 where there is none.
+    /// `^2`, `^-1`, `^1.5`, `²` or `³`, in hundredths; 100 without an exponent.
     fn exponent(&mut self) -> Result<i32, UnitError> {
         for (mark, hundredths) in [('²', 200), ('³', 300)] {
             if let Some(rest) = self.rest.strip_prefix(mark) {
@@ -180,7 +180,7 @@ fn known(name: &str) -> Option<Unit> {
     })
 }
 
-/// What an unknown symbol probably means: a foreign spelling, two units run together, other letters' case.
+/// The probable unit for an unknown symbol: a foreign spelling, two units without a blank, a wrong case of letters.
 fn suggest(name: &str) -> Option<String> {
     if let Some(ours) = ours(name) {
         return Some(ours.to_string());

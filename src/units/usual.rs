@@ -1,5 +1,5 @@
-//! The units in which engineers write a quantity, the most usual first: what a number without a unit, or with that of something near,
-//! may have been meant in.
+//! The units in which engineers write a quantity, the most usual first. They are offered for a number without a unit,
+//! or with the unit of a similar quantity.
 
 use super::Dimension;
 
@@ -24,7 +24,7 @@ const USUAL: [&[&str]; 17] = [
     &["Hz", "kHz"],
 ];
 
-/// The usual units of a dimension; none of one that has a single unit.
+/// The usual units of a dimension; none for a dimension with a single unit.
 pub fn usual_units(dimension: Dimension) -> &'static [&'static str] {
     USUAL.iter().find(|units| Dimension::of_unit(units[0]) == dimension).copied().unwrap_or_default()
 }

@@ -29,8 +29,8 @@ pub const SLIPS: &[Slip] = &[
     (S, "train ore {\n", "train ore : train {\n", E0201, "", ""),
     (S, "trackform stiff : open {", "trackform stiff extends open {", E0105, "`trackform stiff : open {`", "trackform stiff extends open {"),
     (S, "trackform stiff : open {", "trackform stiff(open) {", E0105, "`trackform stiff : open {`", "trackform stiff(open) {"),
-    (S, "sections    = [open: 42 m, stiff: 24 m], stretches", "sections    = [open: 42 m, \\\n  stiff: 24 m], stretches", E0101, "take it away", ""),
-    (S, "sections    = [open: 42 m, stiff: 24 m], stretches", "sections    = [open: 42 m, ...\n  stiff: 24 m], stretches", E0101, "take it away", ""),
+    (S, "sections    = [open: 42 m, stiff: 24 m], stretches", "sections    = [open: 42 m, \\\n  stiff: 24 m], stretches", E0101, "remove this sign", ""),
+    (S, "sections    = [open: 42 m, stiff: 24 m], stretches", "sections    = [open: 42 m, ...\n  stiff: 24 m], stretches", E0101, "remove this sign", ""),
     // what stands in the wrong place
     (S, "spacing = bay", "spacing = bay, let x = 5 mm", E0101, "outside of braces", ""),
     (J, "expect {\n  that   = [17.6", "expect {\n▸  [17.6", E0101, "`that = [", ""),

@@ -70,7 +70,7 @@ pub const SLIPS: &[Slip] = &[
     (S, "stiffness = 3.75 MN/m per bogie", "stiffness = 3.75 MN/m per truck", E0304, "`3.75 MN/m per bogie`", "3.75 MN/m per truck"),
     (X, "force = cyclic(5 .. 60 kN, 20 Hz) per sleeper", "force = cyclic(5 .. 60 kN, 20 Hz)", E0304, "`5 .. 60 kN per ", ""),
     (U, "let first = 0.15 N/mm^3", "let first = 0.15 N/mm3", E0303, "`N/mm^3`", "N/mm3"),
-    (B, "thickness = 300 mm", "thickness = 300mm.", E0101, "nothing ends with a point", ""),
+    (B, "thickness = 300 mm", "thickness = 300mm.", E0101, "remove the point at the end", ""),
     (S, "time_step        = 1e-4 s", "time_step        = 100 usec", E0303, "`µs`", "usec"),
     (S, "time_step        = 1e-4 s", "time_step        = 1x10^-4 s", E0303, "`1e-4 s`", "1x10^-4 s"),
     (S, "time_step        = 1e-4 s", "time_step        = 10^-4 s", E0305, "`1e-4 s`", "10^-4 s"),

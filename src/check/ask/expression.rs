@@ -15,7 +15,7 @@ use crate::units::{Dimension, parse_unit};
 /// An expression with its dimension.
 pub type Typed = (Expression, Dimension);
 
-/// What a value in a comparison may be of, with its factor to the value of one rail or seat.
+/// Bases of a value in a comparison, each with its factor to the value of one rail or seat.
 const BASES: [(&str, f64); 7] = [
     ("seat", 1.0),
     ("sleeper", 0.5),
@@ -26,16 +26,16 @@ const BASES: [(&str, f64); 7] = [
     ("bogie", 0.25),
 ];
 
-/// Operands of one comparison, those of its lets counted wherever they are used.
+/// Operands of one comparison; operands of a `let` are counted at each use.
 const MOST_OPERANDS: usize = 10_000;
 
 impl Reader<'_, '_> {
-    /// Reads a comparison; `None` where a diagnostic has been given.
+    /// Reads a comparison; `None` if a diagnostic has been given.
     pub fn comparison(&mut self, value: &Value, scope: ScopeId) -> Option<Expectation> {
         let ValueKind::Compare { operands, operators } = &value.kind else {
             self.eval.findings.report(
                 Diagnostic::new(Code::E0406, format!("expected a comparison, found {}", looks_like(&value.kind)))
-                    .label(value.span, "compares nothing")
+                    .label(value.span, "not a comparison")
                     .help("write something like `max(settlement) < 3 mm`"),
             );
             return None;
@@ -65,7 +65,7 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// What to write in the place of a plain value, so that it compares with the response beside it.
+    /// Text to write instead of a plain value, so that it can be compared with the response beside it.
     fn comparable(&mut self, operands: &[Value], typed: &[Typed], scope: ScopeId) -> Option<(Span, Help)> {
         let (response, dimension) = typed.iter().find(|(e, _)| !matches!(e, Expression::Number(_)))?;
         let unit = shown_unit(*dimension, response);
@@ -86,14 +86,14 @@ impl Reader<'_, '_> {
         Some(Measured { text, expression, unit: (unit, size) })
     }
 
-    /// Reads an expression with its dimension; `None` where a diagnostic has been given.
+    /// Reads an expression with its dimension; `None` if a diagnostic has been given.
     pub(super) fn expression(&mut self, value: &Value, scope: ScopeId) -> Option<Typed> {
         *self.operands += 1;
         if *self.operands > MOST_OPERANDS {
             if *self.operands == MOST_OPERANDS + 1 {
                 self.eval.findings.report(
-                    Diagnostic::new(Code::E0103, format!("a comparison of more than {MOST_OPERANDS} operands"))
-                        .label(value.span, "given up here"),
+                    Diagnostic::new(Code::E0103, format!("the comparison has more than {MOST_OPERANDS} operands"))
+                        .label(value.span, "too many operands"),
                 );
             }
             return None;
@@ -142,7 +142,7 @@ impl Reader<'_, '_> {
                     .advise(
                         name.span,
                         Help::write(format!("max({})", name.text))
-                            .and(", or `min`, `mean`, `rms`, `percentile` or `place_of_max` of it"),
+                            .and(", or use `min`, `mean`, `rms`, `percentile` or `place_of_max`"),
                     ),
             );
             return None;
@@ -204,7 +204,7 @@ impl Reader<'_, '_> {
         Some((Expression::Binary(Box::new(a.0), op, Box::new(b.0)), dimension))
     }
 
-    /// Values in a comparison are of one rail or one seat, as responses are.
+    /// Values in a comparison are for one rail or one seat, like responses.
     pub fn of_rail(&mut self, raw: &Raw) -> Option<f64> {
         let Some((name, span)) = &raw.basis else { return Some(raw.value) };
         match BASES.iter().find(|(basis, _)| basis == name) {
@@ -213,7 +213,7 @@ impl Reader<'_, '_> {
                 let names: Vec<String> = BASES.iter().map(|(basis, _)| format!("`per {basis}`")).collect();
                 self.eval.findings.report(
                     Diagnostic::new(Code::E0304, format!("expected {}, found `per {name}`", or_list(&names)))
-                        .label(*span, "not of this"),
+                        .label(*span, "wrong basis"),
                 );
                 None
             }
@@ -228,7 +228,7 @@ impl Reader<'_, '_> {
         }
         if ![Dimension::AXLES, Dimension::MASS, Dimension::CYCLES].contains(&raw.dimension) {
             let text = format!("expected a number of axles or the mass carried, found {}", raw.dimension.describe());
-            self.eval.findings.report(Diagnostic::new(Code::E0302, text).label(raw.span, "not counted"));
+            self.eval.findings.report(Diagnostic::new(Code::E0302, text).label(raw.span, "not a count"));
             return None;
         }
         let count = Number { value: raw.value, dimension: raw.dimension, basis: None, factor: 1.0 };

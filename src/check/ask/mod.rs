@@ -1,4 +1,4 @@
-//! What is asked of a scene: expectations, what studies measure and what they vary.
+//! Questions about a scene: expectations, and the values that studies measure and vary.
 
 mod expression;
 pub mod reader;

@@ -1,4 +1,4 @@
-//! The questions of expectations and studies, read once places and counts mean something.
+//! The questions of expectations and studies, read when places and counts are known.
 
 use crate::check::evaluate::evaluator::Evaluator;
 use crate::check::evaluate::value::{Record, Slot, Val};
@@ -11,16 +11,16 @@ use crate::schema::Form;
 use std::borrow::Borrow;
 use std::collections::{BTreeMap, HashMap};
 
-/// What places and counts mean in a scene, as far as its track and its traffic are understood.
+/// The meaning of places and counts in a scene, as far as its track and its traffic are understood.
 #[derive(Clone, Copy, Default)]
 pub struct Counting<'a> {
     pub places: Option<&'a Places>,
-    /// Whether trains run: what is counted is axles.
+    /// Whether trains run, so that counts are axles.
     pub traffic: bool,
     pub counted: Option<&'a Counted>,
 }
 
-/// Reads expressions of responses, and what studies vary.
+/// Reads expressions of responses, and the values that studies vary.
 pub struct Reader<'a, 'm> {
     pub eval: &'a mut Evaluator<'m>,
     pub counting: Counting<'a>,
@@ -28,7 +28,7 @@ pub struct Reader<'a, 'm> {
     pub operands: &'a mut usize,
 }
 
-/// What is asked at one place.
+/// A question at one place.
 #[derive(Clone)]
 pub enum Question {
     Comparison(Expectation),
@@ -37,7 +37,7 @@ pub enum Question {
     Settings(Vec<Setting>),
 }
 
-/// What one record asks, by field; without what is not understood.
+/// The questions of one record, by field; questions that are not understood are left out.
 #[derive(Default)]
 pub struct Questions(BTreeMap<&'static str, Vec<Question>>);
 
@@ -56,24 +56,24 @@ impl Questions {
         self.under(field).filter_map(|q| if let Question::Measured(m) = q { Some(m.clone()) } else { None })
     }
 
-    /// What a study varies; `None` where it is not understood.
+    /// The values that a study varies; `None` if they are not understood.
     pub(super) fn axes(&self) -> Option<Vec<Axis>> {
         self.under("vary").find_map(|q| if let Question::Axes(axes) = q { Some(axes.clone()) } else { None })
     }
 
-    /// What a study sets in every point; `None` where it says nothing, or is not understood.
+    /// The values that a study sets in every point; `None` without settings, or if they are not understood.
     pub fn settings(&self) -> Option<Vec<Setting>> {
         self.under("set").find_map(|q| if let Question::Settings(set) = q { Some(set.clone()) } else { None })
     }
 }
 
-/// What records of the main file ask. A field that several of them inherit is read once, so that a mistake in it stays one for
-/// all of them.
+/// Questions of the records of the main file. A field that several records inherit is read once, so that a mistake in
+/// it is reported once.
 pub fn questions(records: &[impl Borrow<Record>], eval: &mut Evaluator<'_>, counting: Counting<'_>) -> Vec<Questions> {
     let mut known: HashMap<Span, Vec<Question>> = HashMap::new();
     let asked = records.iter().map(|record| {
         let record = record.borrow();
-        // inside the declaration, so that a question that leads back to it closes a circle
+        // inside the declaration, so that a question that refers back to it is found as a circle
         let id = eval.item_of(record)?;
         eval.within(id, record.span, |eval| Some(asked_by(record, eval, counting, &mut known)))
     });
@@ -100,7 +100,7 @@ fn asked_by(
     Questions(asked)
 }
 
-/// Whether a form holds questions.
+/// Whether a form contains questions.
 fn asks(form: &Form) -> bool {
     match form {
         Form::Comparison | Form::Expression | Form::Axes | Form::Settings => true,

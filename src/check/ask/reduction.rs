@@ -1,4 +1,4 @@
-//! How the many values of a response become one number: `max(contact_force, over = -20 .. -1 sleepers, after = 100 axles)`.
+//! Reductions of a response to one number: `max(contact_force, over = -20 .. -1 sleepers, after = 100 axles)`.
 
 use super::expression::Typed;
 use super::reader::Reader;
@@ -15,7 +15,7 @@ use crate::units::Dimension;
 
 const REDUCTIONS: [&str; 7] = ["max", "min", "mean", "rms", "percentile", "place_of_max", "misfit"];
 
-/// What a measured column must be of, by the SI unit of the response that is held against it.
+/// Measure of a measured column, by the SI unit of the response that is compared with it.
 static MEASURED: [schema::Measure; 8] =
     [any_in("N"), any_in("N m"), any_in("m"), any_in("m/s"), any_in("m/s^2"), any_in("N/m"), any_in("Pa"), any_in("s")];
 
@@ -24,7 +24,7 @@ const fn any_in(unit: &'static str) -> schema::Measure {
 }
 
 impl Reader<'_, '_> {
-    /// Whether a call reduces a response. `max` and `min` of anything else are functions of numbers.
+    /// Whether a call reduces a response. Otherwise `max` and `min` are functions of numbers.
     pub(super) fn reduces(&self, word: &Name, arguments: &[Argument], scope: ScopeId) -> bool {
         if !REDUCTIONS.contains(&word.text.as_str()) {
             return false;
@@ -35,7 +35,7 @@ impl Reader<'_, '_> {
         match arguments.first().map(|argument| (&argument.name, &argument.value.kind)) {
             None | Some((Some(_), _)) => true,
             Some((None, ValueKind::Path(path))) if path.names.len() == 1 => {
-                // what is no name of the file is a misspelt response
+                // a word that is not a name of the file is a misspelt response
                 let name = path.names[0].text.as_str();
                 let item =
                     self.eval.scopes[scope].names.get(name).map(|item| &self.eval.scopes[scope].tree.items[*item]);
@@ -46,7 +46,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Refuses a reduction by the name that it has elsewhere.
+    /// Refuses a reduction with a name from other programs.
     pub(super) fn foreign_reduction(&mut self, word: &Name, arguments: &[Argument]) -> bool {
         let response = match arguments.first().map(|a| &a.value.kind) {
             Some(ValueKind::Path(path)) => path.text(),
@@ -62,7 +62,7 @@ impl Reader<'_, '_> {
             },
         };
         self.eval.findings.report(
-            Diagnostic::new(Code::E0408, format!("a response is not reduced by `{}`", word.text))
+            Diagnostic::new(Code::E0408, format!("`{}` is not a reduction of a response", word.text))
                 .label(word.span, "unknown word")
                 .advise(word.span, help),
         );
@@ -76,7 +76,7 @@ impl Reader<'_, '_> {
             _ => {
                 self.eval.findings.report(
                     Diagnostic::new(Code::E0406, format!("`{}` needs a response", word.text))
-                        .label(word.span, "of what?")
+                        .label(word.span, "no response given")
                         .help(format!("write something like `{}(settlement)`", word.text)),
                 );
                 return None;
@@ -107,7 +107,7 @@ impl Reader<'_, '_> {
             match (name, &argument.value.kind) {
                 ("over", ValueKind::Range(from, to)) => {
                     let Val::Range(a, b) = self.eval.span(from, to, scope)? else { return None };
-                    // without places the track is not understood, and the scene not made
+                    // without places the track is not understood, and there is no scene
                     let Some(places) = self.counting.places else { continue };
                     let from = transition.as_ref().map(|(name, span)| (name.as_str(), *span));
                     measure.over = Some(places.span(a, b, from, argument.value.span, &mut self.eval.findings)?);
@@ -156,7 +156,7 @@ impl Reader<'_, '_> {
         let Some(share) = arguments.get(1).filter(|argument| argument.name.is_none()) else {
             self.eval.findings.report(
                 Diagnostic::new(Code::E0403, "`percentile` needs the share of values that lie below")
-                    .label(word.span, "which one?")
+                    .label(word.span, "no share given")
                     .help("write something like `percentile(wheel_force, 95 %)`"),
             );
             return None;
@@ -189,17 +189,17 @@ impl Reader<'_, '_> {
         };
         let Some((file, columns, span)) = file else {
             self.eval.findings.report(
-                Diagnostic::new(Code::E0403, "`misfit` needs the file of what was measured")
-                    .label(word.span, "against what?")
+                Diagnostic::new(Code::E0403, "`misfit` needs a file of measured values")
+                    .label(word.span, "no file given")
                     .help(format!("write something like `misfit({}, file(\"measured.csv\"))`", response.name())),
             );
             return None;
         };
         let Some(measure) = MEASURED.iter().find(|measure| measure.unit == response.unit()) else {
-            let text = format!("`{}` is no value along the track", response.name());
-            self.eval
-                .findings
-                .report(Diagnostic::new(Code::E0406, text).label(arguments[0].value.span, "held against no file"));
+            let text = format!("`{}` is not a value along the track", response.name());
+            self.eval.findings.report(
+                Diagnostic::new(Code::E0406, text).label(arguments[0].value.span, "cannot be compared with a file"),
+            );
             return None;
         };
         let Some(ShapeKind::Table { rows, .. }) = self.eval.data_profile(measure, file, columns, None, span) else {

@@ -1,4 +1,4 @@
-//! Studies: `minimise = max(settlement)`, and what must agree within one study. What varies is read in `vary`.
+//! Studies: `minimise = max(settlement)`, and checks within one study. `vary` reads the values that vary.
 
 use super::reader::{Counting, Questions, questions};
 use crate::check::evaluate::evaluator::Evaluator;
@@ -25,7 +25,7 @@ fn study(record: &Record, asked: &Questions, eval: &mut Evaluator<'_>) -> Option
     let findings = &mut eval.findings;
     if !record.partial && !goals.iter().any(|(_, name)| record.get(name).is_some()) && record.get("report").is_none() {
         findings.report(
-            Diagnostic::new(Code::E0403, format!("study `{}` asks for nothing", record.name))
+            Diagnostic::new(Code::E0403, format!("study `{}` has no objective and no report", record.name))
                 .label(record.span, "needs `minimise`, `maximise` or `report`")
                 .help("write something like `minimise = differential_settlement`"),
         );
@@ -55,7 +55,7 @@ fn study(record: &Record, asked: &Questions, eval: &mut Evaluator<'_>) -> Option
     })
 }
 
-/// No value varies twice, and none inside another.
+/// Checks that no value varies twice, and that no varied value lies inside another.
 fn varied_once(paths: &[(String, Span)], findings: &mut Findings) -> bool {
     let inside = |a: &str, b: &str| a == b || b.strip_prefix(a).is_some_and(|rest| rest.starts_with('.'));
     let mut once = true;
@@ -79,7 +79,7 @@ fn varied_once(paths: &[(String, Span)], findings: &mut Findings) -> bool {
     once
 }
 
-/// A study that comes from a module varies what this file declares.
+/// A study from a module varies declarations of this file.
 fn of_this_file(paths: &[(String, Span)], main: &Scope, findings: &mut Findings) -> bool {
     let mut known = true;
     for (path, span) in paths {
@@ -89,7 +89,7 @@ fn of_this_file(paths: &[(String, Span)], main: &Scope, findings: &mut Findings)
             findings.report(
                 Diagnostic::new(Code::E0704, format!("this file declares nothing called `{first}` to vary"))
                     .label(*span, "varied here")
-                    .help(format!("declare `{first}` in the main file; it may extend what a module has")),
+                    .help(format!("declare `{first}` in the main file; it may extend an entry of a module")),
             );
         }
     }
@@ -107,19 +107,19 @@ fn sampled(sampling: Sampling, axes: &[Axis], record: &Record, findings: &mut Fi
                     Code::E0706,
                     format!("a grid needs lists or steps, and `{}` has neither", axis.path),
                 )
-                .label(axis.span, "has every value between two ends")
+                .label(axis.span, "a continuous range")
                 .help("write `steps(a .. b, count = 5)`, or `sampling = sobol(32)`"),
                 None if points > MOST_POINTS => {
                     Diagnostic::new(Code::E0706, format!("the grid has more than {MOST_POINTS} points"))
                         .label(record.span, "too many combinations")
-                        .help("write `sampling = sobol(64)`, which spreads so many points over all of them")
+                        .help("write `sampling = sobol(64)`, which spreads 64 points over all of them")
                 }
                 None => return true,
             }
         }
         Sampling::Sobol { .. } if axes.len() > MOST_SOBOL_AXES => Diagnostic::new(
             Code::E0706,
-            format!("`sobol` spreads over {MOST_SOBOL_AXES} values at most, found {}", axes.len()),
+            format!("`sobol` can vary at most {MOST_SOBOL_AXES} values, found {}", axes.len()),
         )
         .label(place, "too many values vary")
         .help("write `latin_hypercube`"),

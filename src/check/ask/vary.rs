@@ -1,5 +1,5 @@
-//! What a study varies: `open.pad.stiffness: 20 .. 80 MN/m`. Every path must lead to a field or a `let` of the file, and
-//! every value is held against the form of that field, as if it stood there.
+//! The values that a study varies: `open.pad.stiffness: 20 .. 80 MN/m`. Every path must lead to a field or a `let` of
+//! the file. Every value is checked against the form of that field, as if it were written there.
 
 use super::expression::one_line;
 use super::reader::Reader;
@@ -16,12 +16,12 @@ use crate::syntax::tree::{Argument, Declaration, Entry, Item, Name, Path, UnitTe
 use crate::units::{Dimension, number, parse_unit};
 
 const DISTRIBUTIONS: [&str; 4] = ["steps", "uniform", "normal", "log_normal"];
-/// Levels that `steps` may make.
+/// Largest number of levels of `steps`.
 const MOST_STEPS: f64 = 1e4;
-/// Kinds that say what is asked, not what the scene is.
+/// Kinds that ask about the scene and are not part of it.
 const NOT_OF_THE_SCENE: [&str; 2] = ["study", "scenario"];
 
-/// Where a path leads.
+/// The target of a path.
 #[derive(Clone, Copy)]
 enum Varied {
     Field(&'static Form),
@@ -71,7 +71,7 @@ impl Reader<'_, '_> {
         let ValueKind::List { entries, unit: None } = &value.kind else {
             self.eval.findings.report(
                 Diagnostic::new(Code::E0406, format!("expected a list of pairs, found {}", looks_like(&value.kind)))
-                    .label(value.span, "names no path")
+                    .label(value.span, "no path")
                     .help(help),
             );
             return None;
@@ -81,7 +81,7 @@ impl Reader<'_, '_> {
         for (i, entry) in entries.iter().enumerate() {
             match entry.key.as_ref().map(|key| (&key.kind, key.span)) {
                 Some((ValueKind::Path(path), _)) => pairs.push((path, entry)),
-                // values that stand alone behind a pair belong to it
+                // values without a key behind a pair belong to the pair
                 None if told => {}
                 found => {
                     let place = found.map_or(entry.value.span, |(_, span)| span);
@@ -109,10 +109,10 @@ impl Reader<'_, '_> {
     fn as_path(&self, span: Span) -> Option<Help> {
         let text = self.eval.files.sources.text(span).trim_matches('"').replace('/', ".");
         let plain = text.chars().all(|c| c.is_ascii_alphanumeric() || "_.".contains(c));
-        plain.then(|| Help::write(text).after("names are joined by dots: "))
+        plain.then(|| Help::write(text).after("join names by dots: "))
     }
 
-    /// The brackets that values behind a pair lack: `bay: 0.55, 0.6 m`.
+    /// The missing brackets around values behind a pair: `bay: 0.55, 0.6 m`.
     fn values_alone(&self, entries: &[Entry], at: usize) -> Option<String> {
         let last = entries[at..].iter().take_while(|e| e.key.is_none()).last()?;
         let first = entries.get(at.checked_sub(1)?)?;
@@ -125,10 +125,10 @@ impl Reader<'_, '_> {
             None => (text, ""),
         };
         let path = self.eval.files.sources.text(first.key.as_ref()?.span);
-        Some(format!("several values stand in brackets: write `{}`", format!("{path}: [{numbers}] {unit}").trim_end()))
+        Some(format!("write several values in brackets: `{}`", format!("{path}: [{numbers}] {unit}").trim_end()))
     }
 
-    /// What a path of this file names.
+    /// The target of a path in this file.
     fn target(&mut self, path: &Path, scope: ScopeId) -> Option<Varied> {
         let first = &path.names[0];
         let Some(&item) = self.eval.scopes[scope].names.get(&first.text) else {
@@ -158,8 +158,8 @@ impl Reader<'_, '_> {
             let number = kind.fields.iter().find(|f| f.form.measure().is_some());
             let example = number.or(kind.fields.first()).map(|f| format!("such as `{}.{}`", first.text, f.name));
             self.eval.findings.report(
-                Diagnostic::new(Code::E0704, format!("`{}` is a whole {}", first.text, kind.name))
-                    .label(path.span, "name a field of it")
+                Diagnostic::new(Code::E0704, format!("`{}` is a {}, not one field", first.text, kind.name))
+                    .label(path.span, "name one field")
                     .maybe_help(example),
             );
             return None;
@@ -167,14 +167,14 @@ impl Reader<'_, '_> {
         self.field_at(kind, fields).map(Varied::Field)
     }
 
-    /// The first name of a path leads nowhere.
+    /// Reports a path whose first name is unknown.
     fn nothing_there(&mut self, path: &Path, scope: ScopeId) {
         let first = &path.names[0];
         if self.eval.unread_word(first) || self.eval.scopes[scope].broken.contains(&first.text) {
             return;
         }
         let (message, help) = if self.eval.scopes[scope].modules.contains_key(&first.text) {
-            let message = format!("a study varies what its own file declares, and `{}` is a module", first.text);
+            let message = format!("a study varies declarations of its own file, but `{}` is a module", first.text);
             (message, self.declared_here(path, scope).map(Help::say))
         } else {
             let near = nearest(&first.text, self.eval.scopes[scope].names.keys().map(String::as_str));
@@ -190,7 +190,7 @@ impl Reader<'_, '_> {
         );
     }
 
-    /// How a thing of another file becomes one of this file, that a study may vary.
+    /// Help for an object of another file: how to declare it in this file, so that a study may vary it.
     fn declared_here(&self, path: &Path, scope: ScopeId) -> Option<String> {
         let [module, own, rest @ ..] = path.names.as_slice() else { return None };
         let other = self.eval.scopes[scope].modules.get(&module.text)?;
@@ -202,7 +202,7 @@ impl Reader<'_, '_> {
             "declare `{kind} {0} : {1}.{0}` here, let the scene use it, and vary `{0}{behind}`",
             own.text, module.text
         );
-        // a field of this file that may hold such a thing
+        // a field of this file that may hold such an object
         let holds = |d: &Declaration| {
             let field = schema::kind(&d.kind.text)?.field(kind)?;
             object_kind(&field.form).filter(|k| k.name == kind.as_str())?;
@@ -215,7 +215,7 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// The path of this file that one means which begins with a kind, or with a field.
+    /// The path of this file that was probably meant by a path that begins with a kind or with a field.
     fn full_path(&self, path: &Path, scope: ScopeId) -> Option<String> {
         let text = |names: &[Name]| names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".");
         let [first, rest @ ..] = path.names.as_slice() else { return None };
@@ -279,7 +279,7 @@ impl Reader<'_, '_> {
         None
     }
 
-    /// Whether a value may stand where the path leads.
+    /// Whether a value is allowed at the target of the path.
     fn may_stand(&mut self, target: Varied, value: &Value, scope: ScopeId) -> Option<()> {
         let before = self.eval.findings.errors();
         match target {
@@ -292,7 +292,7 @@ impl Reader<'_, '_> {
         (self.eval.findings.errors() == before).then_some(())
     }
 
-    /// A number for a `let` that is a number has its dimension.
+    /// Checks that a number for a numeric `let` has the dimension of the `let`.
     fn like_the_let(&mut self, id: ItemId, value: &Value, scope: ScopeId) {
         let tree = self.eval.scopes[id.scope].tree.clone();
         let Item::Let(binding) = &tree.items[id.item] else { return };
@@ -300,7 +300,7 @@ impl Reader<'_, '_> {
             self.eval.units_in(value);
             return;
         }
-        // what stands there may be wrong itself, and has been told then
+        // the value there may be wrong itself; then it has been reported
         let told = self.eval.findings.diagnostics.iter().filter(|d| d.is_error()).filter_map(|d| d.labels.first());
         if told.map(|label| label.span).any(|span| binding.value.span.covers(span)) {
             return;
@@ -318,14 +318,14 @@ impl Reader<'_, '_> {
                     code,
                     format!("expected {}, found {}", own.dimension.describe(), raw.dimension.describe()),
                 )
-                .label(value.span, "of another dimension")
-                .label(binding.value.span, "than what it replaces")
+                .label(value.span, "wrong dimension")
+                .label(binding.value.span, "the value that it replaces")
                 .maybe_advise(value.span, help),
             );
         }
     }
 
-    /// The values of an axis, and what stands behind its numbers.
+    /// The values of an axis, and the text behind its numbers.
     fn values(&mut self, target: Varied, value: &Value, scope: ScopeId) -> Option<(String, Values)> {
         let (inner, per) = match &value.kind {
             ValueKind::Per(inner, per) => (&**inner, Some(per.clone())),
@@ -357,7 +357,7 @@ impl Reader<'_, '_> {
                 let help = match near {
                     Some("steps") => Help::say("write something like `steps(20 .. 80 MN/m, count = 4)`"),
                     Some(near) => Help::say(format!("did you mean `{near}`?")),
-                    None if is_number(inner) => Help::write(format!("[{text}]")).after("one value is a list of one: "),
+                    None if is_number(inner) => Help::write(format!("[{text}]")).after("write one value as a list: "),
                     None => Help::say("write `[value, value]`"),
                 };
                 let words: Vec<String> = DISTRIBUTIONS.iter().map(|w| format!("`{w}`")).collect();
@@ -365,7 +365,7 @@ impl Reader<'_, '_> {
                     format!("expected a list, `from .. to`, {}, found {}", or_list(&words), looks_like(other));
                 self.eval.findings.report(
                     Diagnostic::new(Code::E0406, expected)
-                        .label(inner.span, "not several values")
+                        .label(inner.span, "not a list or range of values")
                         .advise(inner.span, help),
                 );
                 None
@@ -403,7 +403,7 @@ impl Reader<'_, '_> {
             }
             let stands = self.may_stand(target, &value, scope).is_some();
             sound &= stands;
-            // what the list says once of all its numbers is told once
+            // a mistake of all numbers of the list is reported once
             wrong_unit |= !stands
                 && bare
                 && matches!(
@@ -421,7 +421,7 @@ impl Reader<'_, '_> {
         if wrong_unit {
             self.eval.one_missing_unit(before, entries);
         }
-        // numbers are told in one unit, where they have one
+        // numbers are shown in one unit, if they have one
         let common = common?;
         let same = choices.iter().all(|(_, number, _)| number.as_ref().is_some_and(|(_, unit)| *unit == common));
         let choices = choices
@@ -431,7 +431,7 @@ impl Reader<'_, '_> {
         sound.then_some((if same { common } else { String::new() }, Values::Listed(choices)))
     }
 
-    /// Both ends of a range in its unit, each held against the target.
+    /// Both ends of a range in its unit, each checked against the target.
     fn ends_of(
         &mut self,
         target: Varied,
@@ -455,7 +455,7 @@ impl Reader<'_, '_> {
             let text = self.eval.files.sources.text(whole).to_owned();
             self.eval.findings.report(
                 Diagnostic::new(Code::E0505, "a range must ascend")
-                    .label(whole, "its first end is not the smaller")
+                    .label(whole, "the first end is not smaller than the second")
                     .maybe_help(swapped(&text).map(|help| help.said)),
             );
             return None;
@@ -465,7 +465,7 @@ impl Reader<'_, '_> {
         Some((suffix, [a.value / size, b.value / size]))
     }
 
-    /// Refuses ends that both lack their unit, once.
+    /// Refuses two ends without units, in one diagnostic.
     fn with_units(
         &mut self,
         target: Varied,
@@ -488,7 +488,7 @@ impl Reader<'_, '_> {
 
     fn unlike(&mut self, a: &Raw, b: &Raw) {
         self.eval.findings.report(
-            Diagnostic::new(Code::E0305, "both need the same dimension")
+            Diagnostic::new(Code::E0305, "both values need the same dimension")
                 .label(a.span, a.dimension.describe())
                 .label(b.span, b.dimension.describe()),
         );
@@ -576,7 +576,7 @@ impl Reader<'_, '_> {
             _ => "log_normal(40 MN/m, cov = 20 %)",
         };
         self.eval.findings.report(
-            Diagnostic::new(Code::E0406, format!("`{}` has other arguments", word.text))
+            Diagnostic::new(Code::E0406, format!("these are not the arguments of `{}`", word.text))
                 .label(word.span, "not understood")
                 .help(format!("write something like `{form}`")),
         );
@@ -638,7 +638,7 @@ impl Suffix {
     }
 }
 
-/// A number as it is told: six digits.
+/// A number as text: six digits.
 fn rounded(x: f64) -> f64 {
     number(x).parse().unwrap_or(x)
 }
@@ -648,7 +648,7 @@ fn with_suffix(x: f64, suffix: &str) -> String {
     format!("{} {suffix}", number(x)).trim_end().to_string()
 }
 
-/// Arguments without the basis that they all share: it may stand at each of them as well as behind the whole.
+/// Arguments without the basis that they all share: it may follow each of them or the whole.
 fn bare(arguments: &[Argument], per: Option<&Name>) -> (Vec<Argument>, Option<Name>) {
     let mut per = per.cloned();
     let strip = |argument: &Argument| match &argument.value.kind {
@@ -671,7 +671,7 @@ fn wrapped(value: Value, per: Option<&Name>) -> Value {
     }
 }
 
-/// Whether it is written as a number, so that reading it as one is no surprise.
+/// Whether the value is written as a number.
 pub(super) fn is_number(value: &Value) -> bool {
     match &value.kind {
         ValueKind::Number { .. } => true,
@@ -681,7 +681,7 @@ pub(super) fn is_number(value: &Value) -> bool {
     }
 }
 
-/// Whether the unit after a list goes to this entry.
+/// Whether the unit after a list applies to this entry.
 fn unit_of_all(value: &Value) -> bool {
     match &value.kind {
         ValueKind::Number { unit, .. } => unit.is_none(),
@@ -701,7 +701,7 @@ fn unit_text(value: &Value) -> Option<UnitText> {
     }
 }
 
-/// What stands behind numbers like this one: its unit, and `per` what.
+/// Text behind such a number: its unit and its basis.
 fn suffix_of(value: &Value, raw: Option<&Raw>) -> String {
     let Some(raw) = raw else { return String::new() };
     let written = unit_text(value).map(|u| u.text).filter(|u| {

@@ -1,4 +1,4 @@
-//! What the scene itself says where a study varies: the value of the scene as it is, beside those of the points.
+//! The value of the scene itself at the path of an axis, shown beside the values of the points.
 
 use super::expression::one_line;
 use super::reader::Reader;
@@ -11,19 +11,19 @@ use crate::schema::Need;
 use crate::syntax::tree::{Item, Name, Path};
 use crate::units::{Dimension, parse_unit};
 
-/// What stands at the end of a path.
+/// The value at the end of a path.
 enum Said {
-    /// A value of the scene or of what it extends.
+    /// A value of the scene or of a base.
     Here(Slot),
     /// The default of its field.
     Default(&'static str),
-    /// Nothing: the part is not there.
+    /// Nothing: the part does not exist.
     Nothing,
 }
 
 impl Reader<'_, '_> {
-    /// What stands at a path of this file, which leads to a field or to a `let`. Says nothing of mistakes there: they are told where
-    /// they stand.
+    /// The value at a path of this file, which leads to a field or to a `let`. Mistakes are reported at their own
+    /// place.
     pub(super) fn written(&mut self, path: &Path, unit: &str, scope: ScopeId) -> Option<Written> {
         let item = *self.eval.scopes[scope].names.get(&path.names[0].text)?;
         let id = ItemId { scope, item };
@@ -45,7 +45,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The text of a value, and its number in the unit of the axis where both are of the same thing.
+    /// The text of a value, and its number in the unit of the axis if both have the same basis.
     fn text_and_number(&self, span: Span, number: Option<(f64, Dimension)>, unit: &str) -> Written {
         let text = one_line(self.eval.files.sources.text(span));
         let (of, per) = split(unit);
@@ -58,12 +58,12 @@ impl Reader<'_, '_> {
     }
 }
 
-/// A value as a table names it: an empty list is what people call none.
+/// A value as text for a table; an empty list is `none`.
 fn named(text: &str) -> String {
     if text == "[]" { "none" } else { text }.to_string()
 }
 
-/// A text in front of `per`, and what it is per.
+/// The text in front of `per`, and the basis behind it.
 fn split(text: &str) -> (&str, &str) {
     text.split_once("per ").map_or((text.trim(), ""), |(before, per)| (before.trim(), per.trim()))
 }

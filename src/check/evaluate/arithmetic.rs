@@ -11,7 +11,7 @@ use crate::syntax::tree::{Argument, BinaryOp, Name, Path, UnitText, Value, Value
 use crate::units::{Dimension, parse_unit};
 
 impl Evaluator<'_> {
-    /// Evaluates arithmetic; `None` where a diagnostic has been given.
+    /// Evaluates arithmetic; `None` if a diagnostic has been given.
     pub fn raw(&mut self, value: &Value, scope: ScopeId) -> Option<Raw> {
         self.deeper(1, value.span, |c| c.raw_of(value, scope))
     }
@@ -52,7 +52,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Reads the units of a value that nothing has asked for.
+    /// Reads the units of an unused value.
     pub fn units_in(&mut self, value: &Value) {
         match &value.kind {
             ValueKind::Number { value: number, unit } => {
@@ -113,7 +113,7 @@ impl Evaluator<'_> {
             Val::Error | Val::Hole => None,
             _ => {
                 self.findings.report(
-                    Diagnostic::new(Code::E0406, format!("expected a number, but `{}` is none", path.text()))
+                    Diagnostic::new(Code::E0406, format!("expected a number, but `{}` is not a number", path.text()))
                         .label(path.span, "not a number"),
                 );
                 None
@@ -124,9 +124,9 @@ impl Evaluator<'_> {
     fn binary(&mut self, left: &Value, op: BinaryOp, right: &Value, span: Span, scope: ScopeId) -> Option<Raw> {
         if let Some(unit) = dashed_unit(self.files.sources.text(span)).filter(|_| op == BinaryOp::Subtract) {
             self.findings.report(
-                Diagnostic::new(Code::E0305, "`-` in a unit takes one value from another")
+                Diagnostic::new(Code::E0305, "`-` subtracts values; it does not join the factors of a unit")
                     .label(span, "")
-                    .advise(span, Help::write(unit).after("the factors of a unit are parted by a blank: ")),
+                    .advise(span, Help::write(unit).after("separate the factors of a unit by a blank: ")),
             );
             return None;
         }
@@ -158,7 +158,7 @@ impl Evaluator<'_> {
             }
             BinaryOp::Multiply => raw(a.value * b.value, a.dimension * b.dimension, basis(&a, &b)),
             BinaryOp::Divide => {
-                // a ratio of two values of the same thing is of nothing
+                // a ratio of two values with the same basis has no basis
                 let both = matches!((&a.basis, &b.basis), (Some(x), Some(y)) if x.0 == y.0);
                 let of = if both { None } else { basis(&a, &b) };
                 raw(a.value / b.value, a.dimension / b.dimension, of)
@@ -182,10 +182,10 @@ impl Evaluator<'_> {
         self.finite(result, span)
     }
 
-    /// What was probably meant by a sum of a value and a number without a unit.
+    /// Help for a sum of a value and a number without a unit.
     fn instead_of_sum(&self, left: &Value, op: BinaryOp, right: &Value, bare: [bool; 2]) -> Option<String> {
         let [a, b] = [left.span, right.span].map(|span| self.files.sources.text(span));
-        // behind a `let` the two may stand anywhere
+        // behind a `let` the two may be anywhere
         let follows = left.span.file == right.span.file && left.span.end <= right.span.start;
         let between = Span { start: left.span.end, end: right.span.start, ..left.span };
         let between = if follows { self.files.sources.text(between) } else { return None };
@@ -195,7 +195,7 @@ impl Evaluator<'_> {
             ([false, true], BinaryOp::Subtract) if between == "-" && a.ends_with(|c: char| c.is_alphabetic()) => {
                 Some(format!("a negative power is written `{a}^-{b}`"))
             }
-            ([true, false], _) if several => Some("several values stand in brackets, behind commas".to_owned()),
+            ([true, false], _) if several => Some("write several values in brackets, separated by commas".to_owned()),
             ([true, false], BinaryOp::Subtract) => Some(format!("a range is written `{a} .. {b}`")),
             ([true, false], _) => Some(format!("give `{a}` its unit too")),
             ([false, true], _) => Some(format!("give `{b}` its unit too")),
@@ -203,13 +203,13 @@ impl Evaluator<'_> {
         }
     }
 
-    /// `10^-4 s` as it should stand, or how powers of ten are written.
+    /// `10^-4 s` in the right form, or help on powers of ten.
     fn power_of_ten(&self, span: Span) -> Help {
         let before = self.files.sources.get(span.file).text[..span.start as usize].trim_end();
         let power = self.files.sources.text(span).strip_prefix("10^").filter(|_| !before.ends_with('*'));
         match power.filter(|p| p.split(' ').next().is_some_and(|n| n.parse::<i32>().is_ok())) {
             Some(power) => Help::write(format!("1e{power}")),
-            None => Help::say("powers of ten stand in the number: `40e6 N/m`"),
+            None => Help::say("write powers of ten in the number: `40e6 N/m`"),
         }
     }
 
@@ -270,7 +270,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// `5 kN-s/m` with a blank in the place of the dash, where that is a number with its unit.
+/// `5 kN-s/m` with a blank instead of the dash, if this is a number with a unit.
 fn dashed_unit(text: &str) -> Option<String> {
     let letter = |c: Option<char>| c.is_some_and(char::is_alphabetic);
     let dash = text

@@ -24,19 +24,19 @@ impl Evaluator<'_> {
         self.arguments_of(word, arguments, &["column"])?;
         let Some((ValueKind::Text(name), span)) = arguments.first().map(|a| (&a.value.kind, a.value.span)) else {
             let first = arguments.first().map(|a| &a.value);
-            // what could not be read has been told
+            // unreadable text has been reported
             if first.is_some_and(|value| value.kind == ValueKind::Error) {
                 return None;
             }
             let help = match first.map(|value| &value.kind) {
                 Some(ValueKind::Path(path)) => {
-                    Help::write(format!("\"{}\"", path.text())).after("a file stands in quotes: ")
+                    Help::write(format!("\"{}\"", path.text())).after("write the name of a file in quotes: ")
                 }
                 _ => Help::say("write something like `file(\"level.csv\")`"),
             };
             self.findings.report(
                 Diagnostic::new(Code::E0403, "`file` needs the name of a data file")
-                    .label(word.span, "which file?")
+                    .label(word.span, "no file given")
                     .advise(first.map_or(word.span, |value| value.span), help),
             );
             return None;
@@ -97,7 +97,7 @@ impl Evaluator<'_> {
                     nearest(name, table.columns.iter().map(|c| c.name.as_str()))
                         .map(|n| format!("did you mean `{n}`?")),
                 ),
-            (None, true) => Diagnostic::new(Code::E0509, format!("`{file}` has places and no values"))
+            (None, true) => Diagnostic::new(Code::E0509, format!("`{file}` has places but no values"))
                 .label(table.header, "one column only")
                 .label(span, "read here"),
             (None, false) => Diagnostic::new(Code::E0509, format!("`{file}` has several columns of values"))
@@ -126,8 +126,8 @@ impl Evaluator<'_> {
             let x = cells[place];
             if let Some(before) = last.filter(|before| before.value >= x.value) {
                 self.findings.report(
-                    Diagnostic::new(Code::E0510, "the places of a data file ascend from row to row")
-                        .label(x.span, "not beyond the row before")
+                    Diagnostic::new(Code::E0510, "the places of a data file must ascend from row to row")
+                        .label(x.span, "not greater than in the row before")
                         .label(before.span, "the row before")
                         .label(span, "read here"),
                 );
@@ -145,7 +145,7 @@ impl Evaluator<'_> {
         }
         if rows.len() < 2 && sound {
             self.findings.report(
-                Diagnostic::new(Code::E0510, format!("expected two rows of numbers or more, found {}", rows.len()))
+                Diagnostic::new(Code::E0510, format!("expected at least two rows of numbers, found {}", rows.len()))
                     .label(table.header, "too few rows below")
                     .label(span, "read here"),
             );

@@ -1,7 +1,7 @@
-//! Arithmetic with profiles: `2 * k` where `k` is one, `k / 2`, `k + 1 mm`, and sums of profiles on the same places.
+//! Arithmetic with profiles: `2 * k` with a profile `k`, `k / 2`, `k + 1 mm`, and sums of profiles on the same places.
 //!
-//! It is done on the text, before anything is read: what acts on a profile acts on every value in it, and each value is then
-//! evaluated, held against the field and pointed at like any other.
+//! It is done on the syntax tree, before values are evaluated: arithmetic on a profile is moved to every value in it.
+//! Each value is then evaluated and checked against the field like any other value.
 
 use super::evaluator::Evaluator;
 use super::written::{bare, is_profile, with_unit};
@@ -9,23 +9,23 @@ use crate::check::text::scope::{ItemId, ScopeId};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Argument, BinaryOp, Entry, Item, Path, UnitText, Value, ValueKind};
 
-/// Parts of a value, and parts inside each other, that are looked at before it is taken for a number: arithmetic refuses what is
-/// larger.
+/// Largest number of parts, and of nested parts, that are searched for a profile. A larger value is taken as a number,
+/// and arithmetic refuses it.
 const MOST_PARTS: usize = 10_000;
 const DEEPEST: usize = 400;
 
-/// What has been looked at.
+/// Parts that have been searched.
 #[derive(Default)]
 struct Seen {
     parts: usize,
     depth: usize,
 }
 
-/// What is done to a value of a profile.
+/// An operation on a value of a profile.
 type Act<'a> = &'a dyn Fn(Value) -> Value;
 
 impl Evaluator<'_> {
-    /// Whether a value varies along the track: a profile, the name of one, or arithmetic with one.
+    /// Whether a value varies along the track: a profile, the name of a profile, or arithmetic with a profile.
     pub fn varies(&self, value: &Value, scope: ScopeId) -> bool {
         self.varies_within(value, scope, &mut Seen::default())
     }
@@ -41,7 +41,7 @@ impl Evaluator<'_> {
                 self.varies_within(left, scope, seen) || self.varies_within(right, scope, seen)
             }
             ValueKind::Negate(inner) => self.varies_within(inner, scope, seen),
-            // a circle of names is found where it is followed
+            // a circle of names is found when the names are evaluated
             ValueKind::Path(path) => {
                 self.bound(path, scope).is_some_and(|(_, binding)| self.varies_within(binding, scope, seen))
             }
@@ -61,7 +61,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// A value that varies, with its arithmetic moved inside: a word or a list of places and nothing around it.
+    /// A value that varies, with its arithmetic moved inside: only a word or a list of places remains.
     pub(super) fn worked(&mut self, value: &Value, scope: ScopeId) -> Option<Value> {
         self.deeper(1, value.span, |c| c.worked_out(value, scope))
     }
@@ -115,18 +115,18 @@ impl Evaluator<'_> {
         }
     }
 
-    /// A mean that is shifted would leave a share of it as deviation; only products keep what `cov` means.
+    /// Refuses sums with a random profile: a shifted mean would change the meaning of `cov`.
     fn scales_only(&mut self, profile: &Value, op: BinaryOp, span: Span) -> Option<()> {
         let scatters = matches!(&profile.kind, ValueKind::Call { word, .. } if word.text == "random");
         if scatters && matches!(op, BinaryOp::Add | BinaryOp::Subtract) {
-            self.not_combined(span, "something is added to a random profile", [profile.span, span]);
+            self.not_combined(span, "a value is added to a random profile", [profile.span, span]);
             return None;
         }
         Some(())
     }
 
-    /// What is done to each value of a profile. Its values stand for the profile in what is said against the arithmetic, so that
-    /// it is said once.
+    /// Applies an operation to each value of a profile. A mistake of the arithmetic points at the profile, so that it
+    /// is reported once.
     fn each(&mut self, profile: Value, act: Act<'_>) -> Option<Value> {
         let span = profile.span;
         let act: Act<'_> = &|of| act(Value { span, ..of });
@@ -173,7 +173,7 @@ impl Evaluator<'_> {
                 let same = arguments.len() == others.len()
                     && arguments.iter().zip(&others).skip(1).all(|(a, b)| self.same_text(&a.value, &b.value));
                 if !same {
-                    self.not_combined(span, "the two run over other spans", spans);
+                    self.not_combined(span, "the two run over different spans", spans);
                     return None;
                 }
                 ValueKind::Call { arguments: sum_of_ends(arguments, others, &sum), word }
@@ -184,7 +184,7 @@ impl Evaluator<'_> {
                     _ => false,
                 };
                 if entries.len() != others.len() || !entries.iter().zip(&others).all(|(a, b)| keys(a, b)) {
-                    self.not_combined(span, "the two have other places", spans);
+                    self.not_combined(span, "the two have different places", spans);
                     return None;
                 }
                 ValueKind::List {
@@ -193,7 +193,7 @@ impl Evaluator<'_> {
                 }
             }
             _ => {
-                self.not_combined(span, "the two are of different forms", spans);
+                self.not_combined(span, "the two have different forms", spans);
                 return None;
             }
         };
@@ -205,17 +205,17 @@ impl Evaluator<'_> {
         let spans = [a.span, b.span];
         let (ValueKind::List { entries, unit }, ValueKind::List { entries: others, unit: other }) = (a.kind, b.kind)
         else {
-            self.not_combined(span, "both vary where they are multiplied or divided", spans);
+            self.not_combined(span, "both vary at the same place in a product or quotient", spans);
             return None;
         };
         let by_spans = |e: &Entry| matches!(e.key.as_ref().map(|k| &k.kind), Some(ValueKind::Range(..)));
         let same = |(a, b): (&Entry, &Entry)| matches!((&a.key, &b.key), (Some(a), Some(b)) if self.same_text(a, b));
         if entries.len() != others.len() || !entries.iter().zip(&others).all(same) {
-            self.not_combined(span, "the two have other places", spans);
+            self.not_combined(span, "the two have different places", spans);
             return None;
         }
         if !entries.iter().any(by_spans) {
-            self.not_combined(span, "between places both vary where they are multiplied or divided", spans);
+            self.not_combined(span, "both vary between places in a product or quotient", spans);
             return None;
         }
         let entries = self.sum_of_entries((entries, unit), (others, other), op, span)?;
@@ -251,21 +251,22 @@ impl Evaluator<'_> {
         Some(sums)
     }
 
-    /// Whether two values are written alike.
+    /// Whether two values are written in the same way.
     fn same_text(&self, a: &Value, b: &Value) -> bool {
         let words = |value: &Value| self.files.sources.text(value.span).split_whitespace().collect::<String>();
         words(a) == words(b)
     }
 
     fn not_combined(&mut self, span: Span, why: &str, parts: [Span; 2]) {
-        let mut mistake =
-            Diagnostic::new(Code::E0428, format!("these profiles do not combine: {why}")).label(span, "not worked out");
+        let mut mistake = Diagnostic::new(Code::E0428, format!("these profiles do not combine: {why}"))
+            .label(span, "cannot be calculated");
         for part in parts.into_iter().filter(|part| *part != span) {
             mistake = mistake.label(part, "this one");
         }
         self.findings.report(mistake.help(
-            "numbers multiply, divide and add to a profile; profiles add where both are `ramp`, both `smooth`, or lists of the same places, \
-             and multiply as lists of the same spans where one of the two is a number in each",
+            "multiply or divide a profile by a number, or add a number; add two profiles if both are `ramp`, both \
+             `smooth`, or lists of the same places; multiply two lists of the same spans if one of the two is a \
+             number on each span",
         ));
     }
 }
@@ -311,7 +312,7 @@ fn sum_of_ends(mut a: Vec<Argument>, mut b: Vec<Argument>, sum: &dyn Fn(Value, V
     a
 }
 
-/// The unit of a literal, its sign aside.
+/// The unit of a literal, also behind a sign.
 fn unit_of(value: &Value) -> Option<&UnitText> {
     match &value.kind {
         ValueKind::Number { unit, .. } => unit.as_ref(),

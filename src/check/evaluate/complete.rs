@@ -1,4 +1,4 @@
-//! Makes an object complete: defaults where nothing is given, and a diagnostic for everything that must be.
+//! Completes an object: adds defaults for fields that are not given, and reports required fields that are missing.
 
 use super::evaluator::Evaluator;
 use super::value::{Record, Slot, Val};
@@ -8,7 +8,7 @@ use crate::syntax::tree::{Item, Value};
 use std::rc::Rc;
 
 impl Evaluator<'_> {
-    /// The record with every default in place, itself and everything inside it.
+    /// The record with every default, also in the objects inside it.
     pub fn complete(&mut self, record: &Record) -> Record {
         let mut full = record.clone();
         for field in record.kind.fields {
@@ -31,7 +31,7 @@ impl Evaluator<'_> {
         full
     }
 
-    /// Puts defaults into whatever a slot holds.
+    /// Puts defaults into the value of a slot.
     pub(super) fn complete_slot(&mut self, slot: &mut Slot) {
         match &mut slot.value {
             Val::Record(inner) => *inner = Rc::new(self.complete(inner)),
@@ -92,13 +92,13 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Refuses two ways that say different things.
+    /// Refuses two ways of giving the same quantity.
     fn one_way(&mut self, record: &Record, alternative: &'static Alternative) {
         let fields = alternative.ways.iter().flat_map(|way| way.iter());
         let given: Vec<(&str, Span)> = fields.filter_map(|path| Some((*path, record.slot(path)?.span))).collect();
         if let [(first, one), (second, other), ..] = given[..] {
             self.findings.report(
-                Diagnostic::new(Code::E0404, format!("`{first}` and `{second}` say two things where one can hold"))
+                Diagnostic::new(Code::E0404, format!("`{first}` and `{second}` give the same quantity in two ways"))
                     .label(other, "")
                     .label(one, "")
                     .help("keep one of the two"),
@@ -114,12 +114,12 @@ impl Evaluator<'_> {
         };
         let mistake = Diagnostic::new(Code::E0403, format!("{who} needs {what}"))
             .label(record.span, "not given")
-            .help(format!("`trackbed docs {}` says what it means", record.kind.name))
+            .help(format!("`trackbed docs {}` explains the field", record.kind.name))
             .maybe_fix(self.hole(record, what));
         record.lacks(what, mistake, &mut self.findings);
     }
 
-    /// A line for what is missing, with a hole to be filled: behind the bracket that opens the object.
+    /// A line for a missing field, with a hole, behind the bracket that opens the object.
     fn hole(&self, record: &Record, what: &str) -> Option<Fix> {
         let field = what.trim_matches('`');
         let source = self.files.sources.get(record.span.file);
@@ -135,7 +135,7 @@ impl Evaluator<'_> {
                 (record.span.end as usize + n, &rest[..n])
             }
         };
-        // only names and a colon stand between a header and its bracket
+        // only names and a colon are allowed between a header and its bracket
         let plain = header.chars().all(|c| c.is_alphanumeric() || c.is_whitespace() || "_.:".contains(c));
         let place = Span::new(record.span.file, from + 1, from + 1);
         let empty = source.text[from + 1..].trim_start().starts_with('}');
@@ -172,7 +172,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// Whether something on the way to a path could not be understood, so that nobody knows what stands there.
+/// Whether a part of a path could not be understood, so that its value is unknown.
 fn hidden_by_error(record: &Record, path: &str) -> bool {
     record.unknown(path)
         || path.split_once('.').is_some_and(|(first, _)| record.get(first).is_none() || record.unknown(first))

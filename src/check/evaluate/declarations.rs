@@ -1,4 +1,4 @@
-//! The declarations of files: each evaluated, those of a kind complete, and those that nothing asks for.
+//! Evaluates the declarations of files, completes the objects of a kind, and finds unused declarations.
 
 use super::evaluator::Evaluator;
 use super::records::header;
@@ -11,12 +11,12 @@ use crate::syntax::tree::{Item, Let, Name, Value, ValueKind};
 use std::collections::HashSet;
 use std::rc::Rc;
 
-/// Kinds that ask something of the scene: those of modules wait until the main file names them.
+/// Kinds that ask about the scene; objects of modules are evaluated only if the main file names them.
 const ASKING: [&str; 2] = ["expect", "study"];
 
 impl Evaluator<'_> {
-    /// Evaluates declarations, the main file's last, and returns those that act by themselves. What asks something of the
-    /// scene waits.
+    /// Evaluates declarations, the main file's last, and returns those that act by themselves. Questions about the
+    /// scene are evaluated later.
     pub fn evaluate_all(&mut self) -> Vec<ItemId> {
         let mut roots = Vec::new();
         let mine: Vec<ScopeId> = (0..self.scopes.len()).filter(|s| !self.scopes[*s].library).collect();
@@ -41,7 +41,7 @@ impl Evaluator<'_> {
         roots
     }
 
-    /// Objects of the main file that ask something of the scene, in its order.
+    /// Objects of the main file that ask about the scene, in its order.
     pub fn asking(&mut self) -> Vec<Rc<Record>> {
         let tree = self.scopes[self.main].tree.clone();
         let mut found = Vec::new();
@@ -55,14 +55,14 @@ impl Evaluator<'_> {
         found
     }
 
-    /// The declaration of the main file that an object is.
+    /// The declaration of an object in the main file.
     pub fn item_of(&self, record: &Record) -> Option<ItemId> {
         let items = &self.scopes[self.main].tree.items;
         let item = items.iter().position(|item| matches!(item, Item::Declaration(d) if header(d) == record.span))?;
         Some(ItemId { scope: self.main, item })
     }
 
-    /// Bindings that nothing asks for may have unknown units all the same, or need each other.
+    /// Evaluates bindings that nothing uses, because they may have unknown units or depend on each other.
     pub fn idle_lets(&mut self) {
         let (used, mut seen) = (self.used.clone(), HashSet::new());
         for scope in (0..self.scopes.len()).filter(|s| !self.scopes[*s].library).collect::<Vec<_>>() {
@@ -76,11 +76,11 @@ impl Evaluator<'_> {
                 }
             }
         }
-        // to be followed is not to be used
+        // this check does not count as a use
         self.used = used;
     }
 
-    /// Follows a binding to those that it names, each once, so that a circle is found.
+    /// Follows a binding to the bindings that it names, each once, to find circles.
     fn follow(&mut self, id: ItemId, binding: &Let, place: Span, seen: &mut HashSet<ItemId>) {
         if !seen.insert(id) && !self.follows(id) {
             return;
@@ -121,12 +121,12 @@ impl Evaluator<'_> {
         found
     }
 
-    /// The object of a kind of which the main file has one, complete.
+    /// The only object of a kind in the main file, complete.
     pub fn only(&mut self, kind: &str) -> Option<Record> {
         self.all(kind).into_iter().next()
     }
 
-    /// `solve` of a scene that says nothing about it.
+    /// The default `solve` of a scene without one.
     pub fn default_solve(&mut self) -> Record {
         let Some(kind) = schema::kind("solve") else { unreachable!("the vocabulary has `solve`") };
         let span = Span::new(FileId(0), 0, 0);
@@ -165,8 +165,8 @@ impl Evaluator<'_> {
         Span::new(span.file, start, end)
     }
 
-    /// Warns of declarations of the main file that nothing asks for. Those of kinds that wait for something else, which is told
-    /// itself, are left alone.
+    /// Warns of unused declarations of the main file. A declaration that waits for another missing part is not
+    /// reported, because the missing part is reported.
     pub fn unused(&mut self, roots: &[ItemId], waiting: &[&str]) {
         let tree = self.scopes[self.main].tree.clone();
         for (item, thing) in tree.items.iter().enumerate() {
@@ -197,7 +197,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// The names in a value that stand alone, without dots.
+/// The single names in a value, without dots.
 fn names_in<'v>(value: &'v Value, names: &mut Vec<&'v Name>) {
     match &value.kind {
         ValueKind::Path(path) => {

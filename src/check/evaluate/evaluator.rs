@@ -1,4 +1,4 @@
-//! The state of evaluation: the scopes, what has been evaluated of them, and how deep it is being followed.
+//! The state of evaluation: the scopes, the values evaluated so far, and the current depth.
 
 use super::number::Raw;
 use super::value::Record;
@@ -20,9 +20,9 @@ pub struct Evaluator<'m> {
     pub scopes: Vec<Scope>,
     /// The main file.
     pub main: ScopeId,
-    /// Where defaults are read: every module of the standard library is known there.
+    /// The scope of defaults: every module of the standard library is known there.
     pub standard: ScopeId,
-    /// Where the text could not be read.
+    /// Unreadable parts of the text.
     pub(super) unreadable: Vec<Span>,
     /// Objects evaluated so far.
     pub(super) records: HashMap<ItemId, Option<Rc<Record>>>,
@@ -30,31 +30,31 @@ pub struct Evaluator<'m> {
     pub(super) numbers: HashMap<ItemId, Option<Raw>>,
     /// Defaults of the schema, parsed.
     pub(super) defaults: HashMap<&'static str, Rc<Value>>,
-    /// Items being evaluated, with the place that asked.
+    /// Items being evaluated, with the place that needs them.
     stack: Vec<(ItemId, Span)>,
-    /// Values inside values at this moment, against [`DEEPEST`].
+    /// Current depth of values inside values, limited by [`DEEPEST`].
     depth: usize,
     /// Circles of names reported so far.
     circles: BTreeSet<Vec<ItemId>>,
-    /// Items that something asked for.
+    /// Used items.
     pub(super) used: BTreeSet<ItemId>,
-    /// Entries of the standard library that are named outside of it, and where; nowhere for a default.
+    /// Entries of the standard library that are named outside the library, with the place; a default has no place.
     pub(super) library_uses: BTreeMap<ItemId, Option<Span>>,
     /// Files that name modules of the standard library without bringing it in.
     pub(super) without_library: BTreeSet<ScopeId>,
     /// The field whose value is being read.
     pub(super) asked: Option<(&'static Kind, &'static str)>,
-    /// Values of another form: what was said of foreign signs in them is not worth following.
+    /// Values of a wrong form; reports on foreign signs inside them are dropped.
     pub(super) superseded: Vec<Span>,
 }
 
-/// Values that lead to values: deeper than people write, shallow enough for any stack.
+/// Largest depth of values inside values: deeper than people write, but safe for any stack.
 const DEEPEST: usize = 1_200;
-/// What following a name costs of that.
+/// Depth that is counted for following a name.
 const NAME: usize = 20;
 
 impl<'m> Evaluator<'m> {
-    /// Begins with what has been loaded: nothing of it is evaluated yet.
+    /// Begins with the loaded files; nothing is evaluated yet.
     pub fn new(loaded: Loaded<'m>) -> Evaluator<'m> {
         let Loaded { files, scopes, main, standard, diagnostics } = loaded;
         let lost = |d: &&Diagnostic| matches!(d.code, Code::E0101 | Code::E0104 | Code::E0106);
@@ -80,7 +80,7 @@ impl<'m> Evaluator<'m> {
         }
     }
 
-    /// Drops what was said of foreign signs in values that are of another form as a whole.
+    /// Drops reports on foreign signs in values that have a wrong form as a whole.
     pub fn drop_superseded(&mut self) {
         let within = |d: &Diagnostic, outer: &Span| {
             d.labels
@@ -91,12 +91,12 @@ impl<'m> Evaluator<'m> {
         self.findings.diagnostics.retain(|d| d.code != Code::E0105 || !superseded.iter().any(|span| within(d, span)));
     }
 
-    /// Goes a step further down, unless that is too deep for the machine.
+    /// Goes one level deeper, unless this is too deep for the machine.
     pub fn deeper<T>(&mut self, steps: usize, span: Span, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         if self.depth + steps > DEEPEST {
             self.findings.report(
-                Diagnostic::new(Code::E0103, "values lead to values that lead to values, too far to follow")
-                    .label(span, "given up here")
+                Diagnostic::new(Code::E0103, "values refer to other values in a chain that is too long")
+                    .label(span, "the chain is too long here")
                     .help("write the value itself"),
             );
             return None;
@@ -107,12 +107,12 @@ impl<'m> Evaluator<'m> {
         result
     }
 
-    /// Runs `f` inside an item, so that a circle of names is found and what it uses is noted. Mistakes found inside a
-    /// `let` get the place of use as their second label.
+    /// Runs `f` inside an item, so that a circle of names is found and uses are noted. Mistakes found inside a `let`
+    /// get the place of use as their second label.
     pub fn within<T>(&mut self, id: ItemId, place: Span, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         self.used.insert(id);
         if let Some(start) = self.stack.iter().position(|(item, _)| *item == id) {
-            // one circle is one mistake, wherever it is entered
+            // a circle is reported once, from any of its names
             let mut members: Vec<ItemId> = self.stack[start..].iter().map(|(item, _)| *item).collect();
             members.sort_unstable();
             if !self.circles.insert(members) {
@@ -120,12 +120,14 @@ impl<'m> Evaluator<'m> {
             }
             let names: Vec<String> =
                 self.stack[start..].iter().map(|(item, _)| *item).chain([id]).map(|i| self.item_name(i)).collect();
-            let mut mistake =
-                Diagnostic::new(Code::E0203, format!("{} need each other", quoted_list(&names[..names.len() - 1])))
-                    .label(place, "closes the circle")
-                    .help(format!("the circle is {}", names.join(" -> ")));
+            let mut mistake = Diagnostic::new(
+                Code::E0203,
+                format!("{} depend on each other", quoted_list(&names[..names.len() - 1])),
+            )
+            .label(place, "closes the circle")
+            .help(format!("the circle is {}", names.join(" -> ")));
             if names.len() == 2 {
-                mistake.message = format!("`{}` needs itself", names[0]);
+                mistake.message = format!("`{}` depends on itself", names[0]);
             }
             self.findings.report(mistake);
             return None;
@@ -174,7 +176,7 @@ impl<'m> Evaluator<'m> {
         self.unreadable.iter().any(|s| s.file == span.file && s.start >= span.start && s.end <= span.end)
     }
 
-    /// Whether a name may have been declared where the text could not be read.
+    /// Whether a name may have been declared in an unreadable part of the text.
     pub fn unread_word(&self, name: &Name) -> bool {
         let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
         self.unreadable.iter().any(|s| {
@@ -182,7 +184,7 @@ impl<'m> Evaluator<'m> {
         })
     }
 
-    /// Where a value that stands in a scope comes from.
+    /// The origin of a value in a scope.
     pub fn origin(&self, span: Span, scope: ScopeId) -> Origin {
         if scope == self.standard {
             Origin::Default

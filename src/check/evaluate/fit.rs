@@ -1,4 +1,4 @@
-//! Holds a value against the form of its field.
+//! Checks a value against the form of its field.
 
 use super::evaluator::Evaluator;
 use super::objects;
@@ -12,7 +12,7 @@ use crate::syntax::tree::{Entry, Item, Name, UnitText, Value, ValueKind};
 use crate::units::{Dimension, number};
 use std::rc::Rc;
 
-/// What kind of thing a value turns out to be, behind names.
+/// The kind of a value, after names have been followed.
 #[derive(PartialEq)]
 enum Shape {
     Number,
@@ -21,7 +21,7 @@ enum Shape {
 }
 
 impl Evaluator<'_> {
-    /// The value of a field; [`Val::Error`] where a diagnostic has been given.
+    /// The value of a field; [`Val::Error`] if a diagnostic has been given.
     pub fn fit(&mut self, form: &'static Form, value: &Value, scope: ScopeId) -> Slot {
         let span = value.span;
         let origin = self.origin(span, scope);
@@ -43,7 +43,7 @@ impl Evaluator<'_> {
         Slot { value: fitted, span, origin }
     }
 
-    /// What could stand in the place of a hole.
+    /// Help for a hole: values that fit the form.
     fn fitting(&self, form: &Form) -> String {
         let entries = self.entries(form);
         if entries.is_empty() {
@@ -80,7 +80,7 @@ impl Evaluator<'_> {
     }
 
     /// A value that is a name: a word, a `let`, or something in a declaration. `None` for everything else, and for
-    /// numbers, which arithmetic follows by itself.
+    /// numbers, which arithmetic follows.
     fn through_name(&mut self, form: &'static Form, value: &Value, scope: ScopeId) -> Option<Slot> {
         let ValueKind::Path(path) = &value.kind else { return None };
         let error = Slot { value: Val::Error, span: value.span, origin: Origin::Written(value.span) };
@@ -181,7 +181,7 @@ impl Evaluator<'_> {
                         Code::E0406,
                         format!("expected {}, found {}", form.describe(), slot.value.describe()),
                     )
-                    .label(path.span, "of another form"),
+                    .label(path.span, "wrong form"),
                 );
                 Some(error)
             }
@@ -232,10 +232,10 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Refuses a value of another form, with what to write instead.
+    /// Refuses a value of a wrong form, with help.
     pub(super) fn wrong_form(&mut self, form: &Form, found: &str, span: Span) {
         let instead = self.instead(form, found, span);
-        // what was said of the signs inside leads to another text of the same wrong form
+        // reports on the signs inside would lead to another value of the same wrong form
         self.superseded.push(span);
         self.findings.report(
             Diagnostic::new(Code::E0406, format!("expected {}, found {found}", form.describe()))
@@ -244,7 +244,7 @@ impl Evaluator<'_> {
         );
     }
 
-    /// Shows the other party of the mistake that was just reported at a place.
+    /// Adds a related place to the mistake that was just reported at a place.
     fn also_at(&mut self, place: Span, span: Span, text: &str) {
         if let Some(last) =
             self.findings.diagnostics.last_mut().filter(|d| d.labels.len() == 1 && d.labels[0].span == place)
@@ -253,7 +253,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// What to write where something of another form stands.
+    /// Help for a value of a wrong form.
     fn instead(&self, form: &Form, found: &str, span: Span) -> Option<Help> {
         let text = self.files.sources.text(span);
         if let Some(help) = self.entry_or_file(form, text) {
@@ -279,7 +279,7 @@ impl Evaluator<'_> {
         }
         if found == "a range" && matches!(form, Form::Number(m) if m.varies == Varies::Yes) {
             let ramp = Help::write(format!("ramp({text})"));
-            return Some(ramp.and(", if it goes from one to the other along the track"));
+            return Some(ramp.and(", if the value changes from one end to the other along the track"));
         }
         let own = self.declared(form);
         let entries = if own.is_empty() { self.entries(form) } else { own };
@@ -287,7 +287,7 @@ impl Evaluator<'_> {
         (!such.is_empty()).then(|| Help::say(format!("name one, such as {such}, or write `{{ field = value }}`")))
     }
 
-    /// A name in quotes that is an entry of the library, or a file where a profile may stand.
+    /// Help for a text in quotes that is an entry of the library, or a file if a profile is allowed.
     fn entry_or_file(&self, form: &Form, text: &str) -> Option<Help> {
         let inner = text.strip_prefix('"')?.strip_suffix('"')?;
         if matches!(form, Form::Number(m) if m.varies == Varies::Yes) && inner.ends_with(".csv") {
@@ -297,7 +297,7 @@ impl Evaluator<'_> {
         Some(Help::write(entry))
     }
 
-    /// What is meant by a value of another form, in the manner of other languages.
+    /// Help for a value of a wrong form that other languages write in this way.
     fn by_habit(&self, form: &Form, found: &str, text: &str) -> Option<Help> {
         let form = if let Form::List(item) = form { item } else { form };
         let field = self.asked.map(|(_, field)| field);
@@ -328,7 +328,8 @@ impl Evaluator<'_> {
         }
         if matches!(form, Form::Place) && found == "a name" {
             return Some(Help::say(
-                "a place is a number: `-20 sleepers`, `[-20, -5] sleepers`; `over = -20 .. -1 sleepers` takes all of a span",
+                "a place is a number: `-20 sleepers`, `[-20, -5] sleepers`; `over = -20 .. -1 sleepers` takes a whole \
+                 span",
             ));
         }
         if found == "a list" && matches!(form, Form::Number(_)) {
@@ -432,7 +433,7 @@ impl Evaluator<'_> {
         None
     }
 
-    /// The kind of what an object written in place extends.
+    /// The kind of the base of an object written in place.
     fn kind_extended(&mut self, value: &Value, scope: ScopeId) -> Option<&'static str> {
         let ValueKind::Object { base: Some(path), .. } = &value.kind else { return None };
         let target = self.resolve(path, scope, &[]).filter(|target| !target.is_let)?;
@@ -455,7 +456,7 @@ impl Evaluator<'_> {
                 };
                 self.findings.report(
                     Diagnostic::new(Code::E0406, "expected a value, found a pair")
-                        .label(key.span, "a key where none belongs")
+                        .label(key.span, "no key is allowed here")
                         .advise(key.span.to(entry.value.span), help),
                 );
                 continue;
@@ -466,7 +467,7 @@ impl Evaluator<'_> {
         Some(Val::List(slots))
     }
 
-    /// Numbers of a list that all lack the same unit lack it once: behind the list, or behind each of its keys.
+    /// Reports a unit that all numbers of a list lack once: behind the list, or behind each of its keys.
     pub fn one_missing_unit(&mut self, before: usize, entries: &[Entry]) {
         let found = &self.findings.diagnostics[before.min(self.findings.diagnostics.len())..];
         let (Some(first), Some(last)) = (entries.first(), entries.last()) else { return };
@@ -487,7 +488,7 @@ impl Evaluator<'_> {
         }
         let start = first.key.as_ref().map_or(first.value.span, |key| key.span);
         let whole = start.to(last.value.span);
-        // `write `-20 sleepers` or `-20 m`` says which units there are
+        // `write `-20 sleepers` or `-20 m`` gives the possible units
         let help = other.help.as_deref().unwrap_or_default();
         let wrote = self.files.sources.text(other.labels[0].span);
         let units: Vec<&str> = help.split('`').skip(1).step_by(2).filter_map(|code| code.strip_prefix(wrote)).collect();
@@ -532,7 +533,7 @@ fn all_bare(entries: &[Entry]) -> bool {
     entries.iter().all(|entry| entry.key.is_none() && bare(&entry.value))
 }
 
-/// `cyclic(5 .. 60 kN, 5 Hz) per sleeper`: `per` after a word is of those of its arguments that are of something.
+/// `cyclic(5 .. 60 kN, 5 Hz) per sleeper`: `per` after a word applies to its arguments that have a basis.
 fn per_inside(form: &Form, value: &Value) -> Option<Value> {
     let ValueKind::Per(inner, basis) = &value.kind else { return None };
     let ValueKind::Call { word, arguments } = &inner.kind else { return None };
@@ -572,7 +573,7 @@ fn span_of(text: &str) -> Option<String> {
     Some(format!("{} .. {}", from.trim(), to.trim()))
 }
 
-/// Whether a bare name is read by the form itself, not looked up.
+/// Whether the form itself reads a bare name, without looking it up.
 fn reads_names(form: &Form) -> bool {
     match form {
         Form::Name | Form::Response | Form::Rule | Form::Comparison | Form::Expression => true,

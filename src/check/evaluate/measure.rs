@@ -1,4 +1,4 @@
-//! Numbers held against a measure: dimension, basis and range; intervals, places and spans.
+//! Checks numbers against a measure: dimension, basis and range; intervals, places and spans.
 
 use super::evaluator::Evaluator;
 use super::number::{Number, Raw};
@@ -12,7 +12,7 @@ use crate::schema::{Basis, Form, Measure};
 use crate::syntax::tree::{Value, ValueKind};
 use crate::units::{Dimension, Quantity, number, parse_unit};
 
-/// What engineers call the parts of which a value is.
+/// Other names that engineers use for the bases of a value.
 const ALSO_CALLED: [(&str, &str); 13] = [
     ("axle", "wheelset"),
     ("half_sleeper", "seat"),
@@ -69,7 +69,7 @@ impl Evaluator<'_> {
         Some(Number { value: raw.value, dimension: raw.dimension, basis, factor })
     }
 
-    /// What was probably meant by a value out of range: a share without its sign, a sign too many, another prefix.
+    /// Help for a value out of range: a share without its sign, a wrong sign, a wrong prefix.
     fn in_range(&self, measure: &Measure, raw: &Raw, shown: f64) -> Option<Help> {
         let fits = |x: f64| (measure.min..=measure.max).contains(&x);
         let per = measure.basis.map_or(String::new(), |b| format!(" per {}", b.names[0].0));
@@ -90,26 +90,26 @@ impl Evaluator<'_> {
         (!measure.unit.is_empty()).then(|| Help::say(said))
     }
 
-    /// The unit in which a number is written, else that of its field.
+    /// The unit in which a number is written, else the unit of its field.
     fn unit_written(&self, raw: &Raw, measure: &Measure) -> String {
         let text = self.files.sources.text(raw.span);
         let unit = text.trim_start_matches(|c: char| c.is_ascii_digit() || "+-._".contains(c)).trim();
         if Dimension::of_unit(unit) == raw.dimension { unit.to_owned() } else { measure.unit.to_owned() }
     }
 
-    /// Refuses `per` of a value that is of one thing only.
+    /// Refuses `per` for a value without a basis.
     fn of_one_thing(&mut self, raw: &Raw) -> Option<()> {
         let Some((name, span)) = &raw.basis else { return Some(()) };
         let text = self.files.sources.text(raw.span).to_string();
         self.findings.report(
-            Diagnostic::new(Code::E0304, format!("`per {name}` says nothing here: the value is of one thing only"))
+            Diagnostic::new(Code::E0304, format!("`per {name}` is not allowed here: the value has no basis"))
                 .label(*span, "leave it out")
                 .write(raw.span.to(*span), text),
         );
         None
     }
 
-    /// What a value is `per`, and the factor from there to one rail.
+    /// The basis of a value, and the factor from it to one rail.
     pub fn basis(&mut self, measure: &'static Measure, raw: &Raw) -> Option<(Option<&'static str>, f64)> {
         match (measure.basis, &raw.basis) {
             (None, None) => Some((None, 1.0)),
@@ -128,12 +128,12 @@ impl Evaluator<'_> {
                         Some(meant) => Help::meant(format!("{text} per {meant}")),
                         None => {
                             let written = Help::write(format!("{text} per {}", basis.names[0].0));
-                            written.and(", if that is what it is")
+                            written.and(", if that is what you meant")
                         }
                     };
                     self.findings.report(
                         Diagnostic::new(Code::E0304, format!("expected {}, found `per {name}`", basis.list()))
-                            .label(*span, "not of this")
+                            .label(*span, "wrong basis")
                             .advise(raw.span.to(*span), help),
                     );
                     None
@@ -145,7 +145,7 @@ impl Evaluator<'_> {
                     let text = self.files.sources.text(raw.span).to_string();
                     self.findings.report(
                         Diagnostic::new(Code::E0304, format!("expected {}, found none of them", basis.list()))
-                            .label(raw.span, "could be of a half or of the whole")
+                            .label(raw.span, "may be per half or per whole")
                             .advise(raw.span, per_what(&text, basis)),
                     );
                     None
@@ -154,7 +154,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Refuses a value of another dimension, or without its unit, where one of these measures was expected.
+    /// Refuses a value of a wrong dimension, or without its unit.
     pub(super) fn wrong_dimension(&mut self, raw: &Raw, measures: &[&'static Measure], expected: &str) {
         if raw.bare && raw.dimension.is_none() {
             return self.missing_unit(measures, &[raw.value], raw.basis_name(), raw.span, expected);
@@ -162,13 +162,13 @@ impl Evaluator<'_> {
         let text = self.files.sources.text(raw.span);
         let other = self.asked.and_then(|(kind, field)| offers::other_way(kind, field, raw));
         let help = match other {
-            Some(field) => Some(Help::say(format!("write `{field} = {text}`, if that is what it is"))),
+            Some(field) => Some(Help::say(format!("write `{field} = {text}`, if that is what you meant"))),
             None => measures.iter().find_map(|measure| offers::of_other_dimension(measure, raw, text)),
         };
         self.other_dimension(measures[0], raw, expected, help);
     }
 
-    /// Refuses both ends of a range for what both of them are.
+    /// Refuses both ends of a range for the same mistake.
     pub(super) fn wrong_ends(&mut self, a: &Raw, b: &Raw, measure: &'static Measure, span: Span) {
         let expected = format!("expected {}", Form::Number(*measure).describe());
         if a.bare && b.bare && b.dimension.is_none() {
@@ -188,7 +188,7 @@ impl Evaluator<'_> {
         );
     }
 
-    /// Refuses numbers without a unit that stand in a span.
+    /// Refuses numbers without a unit in a span.
     pub fn missing_unit(
         &mut self,
         measures: &[&'static Measure],
@@ -272,7 +272,7 @@ impl Evaluator<'_> {
         let swapped = swapped(self.files.sources.text(span));
         self.findings.report(
             Diagnostic::new(Code::E0505, "a span must ascend")
-                .label(span, "its first end is the greater one")
+                .label(span, "the first end is greater than the second")
                 .maybe_advise(span, swapped),
         );
         None
@@ -319,7 +319,7 @@ impl Evaluator<'_> {
             self.findings.report(
                 Diagnostic::new(Code::E0305, "both ends of a span are in `m`, or both in `sleepers`")
                     .label(whole, "mixed")
-                    .help("a sleeper lies at its number times the spacing: write both ends in one of the two"),
+                    .help("write both ends in `m`, or both in `sleepers`"),
             );
             return None;
         }
@@ -327,7 +327,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// A range the other way round: a unit that stands once, behind its second end, stays there.
+/// A range with swapped ends: a unit that is written once, behind the second end, stays there.
 pub fn swapped(text: &str) -> Option<Help> {
     let (from, to) = text.split_once("..")?;
     let (from, to) = (from.trim(), to.trim());
@@ -339,12 +339,12 @@ pub fn swapped(text: &str) -> Option<Help> {
     Some(Help { said: format!("write the smaller end first: `{written}`"), writes: vec![written] })
 }
 
-/// A value with the first of the things that it may be of.
+/// A value with the first basis that it may have.
 fn per_what(text: &str, basis: &Basis) -> Help {
-    Help::write(format!("{text} per {}", basis.names[0].0)).and(", if that is what it is")
+    Help::write(format!("{text} per {}", basis.names[0].0)).and(", if that is what you meant")
 }
 
-/// A number with what it is `per`, as far as it stands behind it.
+/// A number with its basis, if it has one.
 fn of_raw(raw: &Raw) -> Span {
     raw.basis
         .as_ref()

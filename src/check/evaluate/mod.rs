@@ -1,5 +1,5 @@
-//! From trees to typed records: names, arithmetic, dimensions, ranges, profiles as values, defaults. Whatever is remembered of what
-//! has been read is remembered here; the rooms above take records and leave them as they are.
+//! From trees to typed records: names, arithmetic, dimensions, ranges, profiles as values, defaults. All state of
+//! reading is kept here; the modules above use records and do not change them.
 
 mod arithmetic;
 mod columns;

@@ -1,4 +1,4 @@
-//! Looks names up: what a path means in the file in which it stands.
+//! Looks names up: the meaning of a path in its file.
 
 use super::evaluator::Evaluator;
 use super::value::{Slot, Val};
@@ -8,7 +8,7 @@ use crate::diag::{Code, Diagnostic, Fix, Help, Span};
 use crate::schema::{Names, called};
 use crate::syntax::tree::{Item, Name, Path};
 
-/// What a path names, and how many of its names are left to follow inside.
+/// The item that a path names, and the number of names left to follow inside it.
 pub struct Resolved {
     pub id: ItemId,
     pub is_let: bool,
@@ -16,11 +16,10 @@ pub struct Resolved {
 }
 
 impl Evaluator<'_> {
-    /// The declaration or let that a path starts with; a diagnostic where there is none. `words` are what could have
-    /// stood there besides names.
+    /// The declaration or let that a path starts with; a diagnostic if there is none. `words` are also allowed there.
     pub fn resolve(&mut self, path: &Path, scope: ScopeId, words: &[&str]) -> Option<Resolved> {
         let first = &path.names[0];
-        // where a name is that of a module too, which has been reported, the longer path decides
+        // if a name is also the name of a module, which has been reported, the longer path decides
         if let (Some(&module), Some(second)) = (self.scopes[scope].modules.get(&first.text), path.names.get(1))
             && let Some(target) = self.lookup(module, second, 2)
         {
@@ -37,7 +36,7 @@ impl Evaluator<'_> {
             let Some(second) = path.names.get(1) else {
                 self.findings.report(
                     Diagnostic::new(Code::E0201, format!("`{}` is a module, not a value", first.text))
-                        .label(path.span, "name something in it")
+                        .label(path.span, "name an entry of the module")
                         .maybe_help(
                             self.scopes[module].names.keys().next().map(|n| format!("such as `{}.{n}`", first.text)),
                         ),
@@ -62,7 +61,7 @@ impl Evaluator<'_> {
         None
     }
 
-    /// Notes where the user's files, or a default, name an entry of the standard library.
+    /// Notes each place in the user's files, or in a default, that names an entry of the standard library.
     fn note_library(&mut self, id: ItemId, span: Span, scope: ScopeId) {
         let of_library = |scope: ScopeId| self.scopes[scope].library;
         if scope == self.standard {
@@ -100,7 +99,7 @@ impl Evaluator<'_> {
                 Help::write(behind.trim_start_matches('.')).and(": `use std` brings its modules in by their own names"),
             )
         } else if library && !here.modules.contains_key(&name.text) {
-            // one line is missing, however many modules it would have brought in
+            // one missing line is reported once, for all its modules
             if !self.without_library.insert(scope) || self.wanted_library(name.span) {
                 return;
             }
@@ -109,8 +108,8 @@ impl Evaluator<'_> {
         } else if let Some(entry) = self.entry_called(&name.text).filter(|_| near.is_none()) {
             Some(Help { said: format!("did you mean `{entry}` of the standard library?"), writes: vec![entry] })
         } else if near.is_none() && crate::units::parse_unit(&name.text).is_ok() {
-            let unit = "a unit? it stands without blanks around `/` and `*`: `km/h`, `kN s/m`";
-            Some(Help::say(format!("is `{}` {unit}", name.text)))
+            let unit = "is a unit, write it without blanks around `/` and `*`: `km/h`, `kN s/m`";
+            Some(Help::say(format!("if `{}` {unit}", name.text)))
         } else if near.is_none() && !words.is_empty() {
             let words: Vec<String> = words.iter().map(|w| format!("`{w}`")).collect();
             Some(Help::say(format!("expected {}", crate::diag::or_list(&words))))
@@ -125,7 +124,7 @@ impl Evaluator<'_> {
         );
     }
 
-    /// Where a line stands that begins the file of a place: before its first item, with the comments above.
+    /// The place for a new first line of a file: before its first item and the comments above it.
     fn first_line(&self, place: Span) -> Span {
         let tree = self.scopes.iter().find(|scope| scope.tree.file == place.file).map(|scope| scope.tree.clone());
         let first = tree.and_then(|tree| tree.items.first().map(|item| (item.span(), item.docs().len())));
@@ -136,7 +135,7 @@ impl Evaluator<'_> {
         Span::new(place.file, start, start)
     }
 
-    /// Whether a line of that file which has been reported was to bring the standard library in: `import std`.
+    /// Whether a reported line of that file should have brought in the standard library: `import std`.
     fn wanted_library(&self, place: Span) -> bool {
         let lost =
             self.findings.diagnostics.iter().filter(|d| matches!(d.code, Code::E0101 | Code::E0105 | Code::E0204));
@@ -149,7 +148,7 @@ impl Evaluator<'_> {
         })
     }
 
-    /// The entry of the standard library with that name, else one with a name near to it, with its module.
+    /// The entry of the standard library with that name, else the entry with a similar name, with its module.
     pub(super) fn entry_called(&self, name: &str) -> Option<String> {
         let modules = &self.scopes[self.standard].modules;
         let entries = modules.iter().flat_map(|(module, scope)| {
@@ -171,7 +170,7 @@ impl Evaluator<'_> {
         for name in &path.names[target.taken..] {
             let Val::Record(record) = &slot.value else {
                 self.findings.report(
-                    Diagnostic::new(Code::E0201, format!("there is nothing inside a value to call `{}`", name.text))
+                    Diagnostic::new(Code::E0201, format!("a value has no part called `{}`", name.text))
                         .label(name.span, "not an object"),
                 );
                 return None;
@@ -182,12 +181,9 @@ impl Evaluator<'_> {
                 None => {
                     if self.field_of(record.kind, name).is_some() && !record.partial {
                         self.findings.report(
-                            Diagnostic::new(
-                                Code::E0403,
-                                format!("`{}` says nothing about `{}`", record.name, name.text),
-                            )
-                            .label(name.span, "not given there")
-                            .label(record.span, "declared here"),
+                            Diagnostic::new(Code::E0403, format!("`{}` does not give `{}`", record.name, name.text))
+                                .label(name.span, "not given there")
+                                .label(record.span, "declared here"),
                         );
                     }
                     return None;

@@ -1,23 +1,23 @@
-//! Numbers: as arithmetic makes them, and as a field holds them.
+//! Numbers: results of arithmetic, and values of fields.
 
 use crate::diag::Span;
 use crate::units::Dimension;
 
-/// A number as evaluated, before any field has looked at it.
+/// An evaluated number, before it is checked against a field.
 #[derive(Debug, Clone)]
 pub struct Raw {
     pub value: f64,
     pub dimension: Dimension,
     /// The name after `per`, and its place.
     pub basis: Option<(String, Span)>,
-    /// Where its literal stands, even behind a `let`.
+    /// The place of its literal, even behind a `let`.
     pub span: Span,
-    /// A literal without a unit, which may only lack one.
+    /// A literal without a unit; perhaps the unit was forgotten.
     pub bare: bool,
 }
 
 impl Raw {
-    /// What it is `per`.
+    /// Its basis.
     pub(super) fn basis_name(&self) -> Option<&str> {
         self.basis.as_ref().map(|(name, _)| name.as_str())
     }
@@ -37,7 +37,7 @@ impl From<Raw> for Number {
     }
 }
 
-/// A number in SI as written, with what it is of.
+/// A number in SI as written, with its basis.
 #[derive(Debug, Clone, Copy)]
 pub struct Number {
     pub value: f64,

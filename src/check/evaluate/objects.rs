@@ -1,10 +1,11 @@
-//! Objects to write where a number or a word stands: `{ stiffness = 40 MN/m }` for `40 MN/m`, `[wagon: 10]` for `10 wagon`.
+//! Objects to write instead of a number or a word: `{ stiffness = 40 MN/m }` for `40 MN/m`, `[wagon: 10]` for
+//! `10 wagon`.
 
 use crate::diag::Help;
 use crate::schema::{self, Field, Form, Kind, Need};
 use crate::units::{Dimension, parse_unit};
 
-/// The object whose one needed field takes a number, where it is written as one; `value` is what the field shall have.
+/// The object to write instead of a number, if the object has one required field; `value` is the value of that field.
 pub fn of_number(form: &Form, number: &str, value: &str) -> Option<Help> {
     let bare = number.split(" per ").next().unwrap_or(number);
     let (_, unit) = bare.split_once(' ')?;
@@ -27,7 +28,7 @@ pub fn of_word(form: &Form, word: &str, text: &str) -> Option<Help> {
     Some(Help::write(format!("{{ {} = {text} }}", field.name)))
 }
 
-/// `10 wagon` and `10 * wagon` where objects are counted.
+/// Help for `10 wagon` and `10 * wagon` in a field that counts objects.
 pub fn counted(form: &Form, text: &str) -> Option<Help> {
     let Form::Object("vehicle") = form else { return None };
     let parts: Vec<&str> = text.split([' ', '*']).filter(|part| !part.is_empty()).collect();

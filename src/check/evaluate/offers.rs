@@ -1,21 +1,22 @@
-//! What to write instead of a number that a field cannot take: with the unit that makes it legal, or as the quantity that the field has.
+//! Help for a number that a field cannot take: with a unit that makes it legal, or converted to the quantity of the
+//! field.
 
 use super::number::Raw;
 use crate::diag::Help;
 use crate::schema::{Kind, Measure};
 use crate::units::{Dimension, number, parse_unit, usual_units};
 
-/// What a weight is divided by.
+/// Divisor from a weight to a mass.
 const GRAVITY: f64 = 9.81;
-/// Where a scene does not say it here: the usual spacing, and half of the base area of a usual sleeper.
+/// The usual spacing, and half of the base area of a usual sleeper.
 const SPACING: f64 = 0.6;
 const HALF_BASE: f64 = 0.39;
 
-/// A range from zero says little about a value far below its other end: such a value is more likely in a greater unit.
+/// A value far below the upper end of a range from zero more likely has a greater unit.
 const SMALL: f64 = 1e-4;
 
 impl Measure {
-    /// A value in SI, as it stands in the unit of the range.
+    /// A value in SI, converted to the unit of the range.
     fn shown(&self, value: f64, basis: Option<&str>) -> f64 {
         let unit = parse_unit(self.unit).map_or(1.0, |u| u.factor);
         let of = self.basis.map_or(1.0, |b| {
@@ -25,14 +26,14 @@ impl Measure {
         value * of / unit
     }
 
-    /// Whether a value in SI lies in the range, some rounding apart.
+    /// Whether a value in SI lies in the range, with some rounding.
     fn takes(&self, value: f64, basis: Option<&str>) -> bool {
         let shown = self.shown(value, basis);
         let slack = 1e-9 * shown.abs();
         (self.min - slack..=self.max + slack).contains(&shown)
     }
 
-    /// Whether a value in SI is one that people write here.
+    /// Whether a value in SI is a usual value here.
     fn likely(&self, value: f64, basis: Option<&str>) -> bool {
         let shown = self.shown(value, basis);
         self.takes(value, basis) && (self.min != 0.0 || shown == 0.0 || shown >= SMALL * self.max)
@@ -52,11 +53,11 @@ impl Measure {
     }
 }
 
-/// What to write instead of numbers without a unit, as they stand in the text.
+/// Help for numbers without a unit, as they are in the text.
 pub fn with_unit(text: &str, values: &[f64], measures: &[&Measure], basis: Option<&str>) -> Help {
     let legal = measures.iter().filter_map(|m| Some((Dimension::of_unit(m.unit), m.legal_unit(values, basis)?)));
     let mut legal: Vec<(Dimension, &str)> = legal.collect();
-    // a length may be counted in sleepers as well; of other units the first is the usual one
+    // a length may also be counted in sleepers; otherwise the first unit is the usual one
     if !legal.iter().any(|(dimension, _)| *dimension == Dimension::SLEEPERS) {
         legal.truncate(1);
     }
@@ -83,11 +84,11 @@ pub fn with_unit(text: &str, values: &[f64], measures: &[&Measure], basis: Optio
     Help::say(format!("its unit is `{unit}`, its range {} .. {} {unit}", number(measure.min), number(measure.max)))
 }
 
-/// What a dashpot wants where a share stands.
+/// Help for a dashpot that is given as a share.
 const RATIO: &str = "a dashpot is given in `kN s/m`, not as a damping ratio: `damping = 5 kN s/m`, \
                      or as a time, damping / stiffness: `damping_time = 0.125 ms`";
 
-/// Text of what is to be written in the place of a value of another dimension, where it can be told.
+/// Help for a value of another dimension, if there is a conversion.
 pub fn of_other_dimension(measure: &Measure, raw: &Raw, text: &str) -> Option<Help> {
     let basis = raw.basis_name();
     let per = basis.filter(|b| measure.basis.is_some_and(|m| m.factor(b).is_some()));
@@ -119,7 +120,7 @@ pub fn ends_of_other_dimension(measure: &Measure, a: &Raw, b: &Raw) -> Option<He
         .then(|| Help::write(format!("{from} .. {to} {}", measure.unit)).and(&format!(": {why}")))
 }
 
-/// A value in SI in the unit of the field, else in another usual one; nothing where it is out of range.
+/// A value in SI in the unit of the field, else in another usual unit; nothing if it is out of range.
 fn in_own_unit(measure: &Measure, value: f64, basis: Option<&str>) -> Option<String> {
     if !measure.takes(value, basis) {
         return None;
@@ -128,7 +129,7 @@ fn in_own_unit(measure: &Measure, value: f64, basis: Option<&str>) -> Option<Str
     Some(format!("{} {}", four_digits(value / unit), measure.unit).trim_end().to_owned())
 }
 
-/// From the quantity that was found to the expected one: a factor, the power of the value, and why.
+/// Conversion from the found quantity to the expected quantity: a factor, the power of the value, and the reason.
 fn conversion(expected: Dimension, found: Dimension) -> Option<(f64, i32, &'static str)> {
     let gravity = Dimension::of_unit("m/s^2");
     let turn = std::f64::consts::TAU;
@@ -139,14 +140,14 @@ fn conversion(expected: Dimension, found: Dimension) -> Option<(f64, i32, &'stat
         return Some((GRAVITY, 1, "a mass times 9.81 m/s^2 is a weight"));
     }
     if found * expected == Dimension::NONE && !found.is_none() {
-        return Some((1.0, -1, "one divided by it"));
+        return Some((1.0, -1, "the reciprocal of this value"));
     }
     let frequency = Dimension::of_unit("Hz");
     if expected == frequency && found == Dimension::of_unit("rad/s") {
         return Some((1.0 / turn, 1, "an angular frequency divided by 2 pi"));
     }
     if expected == frequency && found == Dimension::of_unit("cycles/s") {
-        return Some((1.0, 1, "a frequency needs no count"));
+        return Some((1.0, 1, "a frequency has no count"));
     }
     if expected == Dimension::LENGTH && found == Dimension::of_unit("sleepers/m") {
         return Some((1.0, -1, "one divided by the number of sleepers in a length"));
@@ -154,22 +155,22 @@ fn conversion(expected: Dimension, found: Dimension) -> Option<(f64, i32, &'stat
     None
 }
 
-/// Pairs of quantities that are taken for each other, each with words of its own.
+/// Pairs of quantities that are often confused, each with its own help.
 fn special(measure: &Measure, raw: &Raw, per: &str) -> Option<Help> {
     let (expected, found) = (Dimension::of_unit(measure.unit), raw.dimension);
     let of = |unit: &str| Dimension::of_unit(unit);
     let (stiffness, bedding, pressure) = (of("MN/m"), of("N/mm^3"), of("MPa"));
     let offered = |value: f64| in_own_unit(measure, value, raw.basis_name()).map(|text| format!("{text}{per}"));
     let offer = |why: &str, place: String, text: Option<String>| match text {
-        Some(text) => Help { said: format!("{why}, at {place} `{text}`"), writes: vec![text] },
+        Some(text) => Help { said: format!("{why}; for {place} this is `{text}`"), writes: vec![text] },
         None => Help::say(why),
     };
     if expected == stiffness && found == pressure && measure.basis.is_some() {
-        let why = "it is per metre of rail: a seat has it times the spacing";
+        let why = "this value is per metre of rail: multiply it by the spacing for one seat";
         return Some(offer(why, format!("{SPACING} m"), offered(raw.value * SPACING)));
     }
     if expected == stiffness && found == bedding {
-        let why = "it is per area: a seat has it times half of the sleeper's base area";
+        let why = "this value is per area: multiply it by half of the sleeper's base area for one seat";
         let text = offered(raw.value * HALF_BASE).filter(|_| measure.basis.is_some());
         return Some(offer(why, format!("{HALF_BASE} m^2"), text));
     }
@@ -187,7 +188,7 @@ fn special(measure: &Measure, raw: &Raw, per: &str) -> Option<Help> {
         return match () {
             () if expected == of("kN s/m") => Some(Help::say(RATIO)),
             () if expected == of("ms") && measure.unit == "ms" => {
-                Some(Help::say("it is a time, damping / stiffness: 5 kN s/m on 40 MN/m are `0.125 ms`"))
+                Some(Help::say("the field is a time, damping / stiffness: 5 kN s/m with 40 MN/m gives `0.125 ms`"))
             }
             () if slope => Some(Help::say("a slope is written as a ramp: `ramp(0 .. 20 mm, over = -10 .. 0 m)`")),
             () => None,
@@ -197,11 +198,11 @@ fn special(measure: &Measure, raw: &Raw, per: &str) -> Option<Help> {
         return Some(Help::say("a share is given in `%`: the length divided by the whole"));
     }
     if expected == Dimension::TIME && [Dimension::AXLES, Dimension::CYCLES].contains(&found) {
-        let why = "an interval of samples is a time; counts of traffic stand in a list: `after = [100, 200] axles`";
+        let why = "an interval of samples is a time; counts of traffic are a list: `after = [100, 200] axles`";
         return Some(Help::say(why));
     }
     if expected == Dimension::AXLES && found == Dimension::TIME {
-        return Some(Help::say("traffic is counted in `axles` or as the mass carried, `MGT`, not by the time"));
+        return Some(Help::say("traffic is counted in `axles` or as the mass carried, `MGT`, not by time"));
     }
     None
 }
@@ -242,7 +243,7 @@ fn literal(text: &str) -> Option<(&str, &str)> {
     (!digits.is_empty() && parse_unit(unit).is_ok()).then_some((digits, unit))
 }
 
-/// The field that a value belongs to, where it says the same thing as `field` in another way.
+/// The field that a value belongs to, if that field gives the same quantity as `field` in another way.
 pub fn other_way(kind: &Kind, field: &str, raw: &Raw) -> Option<&'static str> {
     let ways = kind.alternatives.iter().filter(|a| a.ways.iter().any(|way| way.contains(&field)));
     let mut others = ways.flat_map(|a| a.ways.iter()).flat_map(|way| way.iter()).filter(|other| **other != field);
@@ -256,7 +257,7 @@ fn four_digits(value: f64) -> String {
     number(rounded)
 }
 
-/// What to write in a comparison in the place of an operand that is not of the other's dimension, in a usual unit.
+/// Help for an operand of a comparison with another dimension, in a usual unit.
 pub fn in_comparison(expected: Dimension, raw: &Raw, text: &str, unit: &str) -> Option<Help> {
     let per = raw.basis_name().map_or(String::new(), |name| format!(" per {name}"));
     if raw.bare && raw.dimension.is_none() {

@@ -1,4 +1,5 @@
-//! Lists of pairs, `[key: value]`: each side against its form, and what to write where keys are missing or have changed places.
+//! Lists of pairs, `[key: value]`: checks each side against its form, and helps if keys are missing or swapped with
+//! values.
 
 use super::evaluator::Evaluator;
 use super::fit::form_has_numbers;
@@ -11,7 +12,7 @@ use crate::schema::Form;
 use crate::syntax::tree::{Entry, Value, ValueKind};
 
 impl Evaluator<'_> {
-    /// The pairs of a list, each side held against its own form.
+    /// The pairs of a list, each side checked against its own form.
     pub(super) fn pairs(&mut self, form: &'static Form, value: &Value, scope: ScopeId) -> Option<Val> {
         let Form::Pairs { key, value: content, implied } = form else { return None };
         let alone;
@@ -25,7 +26,7 @@ impl Evaluator<'_> {
         if let Some(swapped) = self.swapped(key, entries) {
             self.findings.report(
                 Diagnostic::new(Code::E0406, format!("expected {}", form.describe()))
-                    .label(value.span, "keys and values have changed places")
+                    .label(value.span, "keys and values are swapped")
                     .write(value.span, swapped),
             );
             return None;
@@ -42,7 +43,7 @@ impl Evaluator<'_> {
                 }
                 (None, Some(text)) => (self.fit(key, &entry.value, scope), self.default_value(content, text)),
                 (None, None) => {
-                    // what could not be read behind it may have been the other half
+                    // unreadable text behind it may have been the other half
                     let rest =
                         |s: &Span| s.file == entry.value.span.file && s.start.abs_diff(entry.value.span.end) <= 1;
                     let torn = self.unreadable.iter().any(rest) || entry.value.kind == ValueKind::Error;
@@ -54,7 +55,7 @@ impl Evaluator<'_> {
                                 .help(self.as_pairs(key, content, entries)),
                         );
                     }
-                    // one such list is one mistake
+                    // such a list is reported once
                     lone = true;
                     let nothing = Slot { value: Val::Error, span: entry.value.span, origin: Origin::Derived };
                     (nothing.clone(), nothing)
@@ -66,7 +67,7 @@ impl Evaluator<'_> {
         Some(Val::Pairs(pairs))
     }
 
-    /// A list whose keys are numbers and whose values are names, the other way round.
+    /// A list with numbers as keys and names as values, with keys and values swapped.
     fn swapped(&self, key: &Form, entries: &[Entry]) -> Option<String> {
         let number = |value: &Value| matches!(value.kind, ValueKind::Number { .. });
         let name = |value: &Value| matches!(value.kind, ValueKind::Path(_));
@@ -79,17 +80,17 @@ impl Evaluator<'_> {
         Some(format!("[{}]", entries.iter().map(pair).collect::<Option<Vec<_>>>()?.join(", ")))
     }
 
-    /// How the entries of a list that stand alone become pairs.
+    /// Help to turn the entries of a list without keys into pairs.
     fn as_pairs(&self, key: &Form, content: &Form, entries: &[Entry]) -> String {
         let text = |e: &Entry| self.files.sources.text(e.value.span);
         let names = entries.iter().all(|e| e.key.is_none() && matches!(e.value.kind, ValueKind::Path(_)));
         match entries {
             [only] if matches!(key, Form::Name) && content.word(text(only)).is_some() => {
-                format!("it has a name: write `[edge: {}]`", text(only))
+                format!("it needs a name: write `[edge: {}]`", text(only))
             }
             [_, _, ..] if names => {
                 let pairs: Vec<String> = entries.iter().map(|e| format!("{}: ...", text(e))).collect();
-                format!("each has its value: write `[{}]`", pairs.join(", "))
+                format!("each needs a value: write `[{}]`", pairs.join(", "))
             }
             _ => "write `[key: value]`".to_owned(),
         }

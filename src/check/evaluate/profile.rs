@@ -1,5 +1,5 @@
-//! Values that vary along the track, as written: `ramp`, `smooth`, `random`, lists keyed by places or spans, data files. Where their
-//! places lie is for `seats` to find, once the track is laid out.
+//! Values that vary along the track, as written: `ramp`, `smooth`, `random`, lists keyed by places or spans, data
+//! files. `places` finds the chainages of their places when the track is laid out.
 
 use super::evaluator::Evaluator;
 use super::number::{Number, Raw};
@@ -14,7 +14,7 @@ use crate::syntax::tree::{Argument, Entry, Item, Name, UnitText, Value, ValueKin
 use crate::units::Dimension;
 
 impl Evaluator<'_> {
-    /// A number, or where the field may vary along the track a profile.
+    /// A number, or a profile if the field may vary along the track.
     pub(super) fn number_or_profile(
         &mut self,
         measure: &'static Measure,
@@ -43,7 +43,7 @@ impl Evaluator<'_> {
         None
     }
 
-    /// Whether a sign of another language has been reported inside a span, and says what to write instead.
+    /// Whether a sign of another language has been reported inside a span, with its own help.
     fn misspelt_inside(&self, span: Span) -> bool {
         let inside = |label: &crate::diag::Label| {
             label.span.file == span.file && label.span.start >= span.start && label.span.end <= span.end
@@ -51,7 +51,7 @@ impl Evaluator<'_> {
         self.findings.diagnostics.iter().any(|d| d.code == Code::E0105 && d.labels.first().is_some_and(inside))
     }
 
-    /// Reports a word that is nearly that of a profile.
+    /// Reports a word that is similar to the word of a profile.
     fn misspelt_profile(&mut self, value: &Value) -> bool {
         let ValueKind::Call { word, .. } = &bare(value).0.kind else { return false };
         if matches!(word.text.as_str(), "sqrt" | "abs" | "min" | "max") {
@@ -108,7 +108,7 @@ impl Evaluator<'_> {
         Some(Shape { kind, span: value.span, from: None, runs: None })
     }
 
-    /// A profile behind a name; the outer `None` where the name is of a number, or of nothing.
+    /// A profile behind a name; the outer `None` if the name is a number, or unknown.
     fn named_shape(
         &mut self,
         measure: &'static Measure,
@@ -116,7 +116,7 @@ impl Evaluator<'_> {
         per: &Per,
         scope: ScopeId,
     ) -> Option<Option<Shape>> {
-        // what cannot be resolved is reported where its number is asked for
+        // an unknown name is reported when its number is read
         let first = self.scopes[scope].names.get(&path.names[0].text).copied()?;
         let tree = self.scopes[scope].tree.clone();
         let Item::Let(binding) = &tree.items[first] else { return None };
@@ -146,7 +146,7 @@ impl Evaluator<'_> {
         let Some(first) = arguments.first().filter(|a| a.name.is_none()) else {
             self.findings.report(
                 Diagnostic::new(Code::E0403, format!("`{}` needs its two values", word.text))
-                    .label(word.span, "from what to what?")
+                    .label(word.span, "no values given")
                     .help(format!("write something like `{}(a .. b)`", word.text)),
             );
             return None;
@@ -160,7 +160,7 @@ impl Evaluator<'_> {
         let (a, b) = self.ends(from, to, scope)?;
         let a = Raw { basis: a.basis.clone().or(per.clone()), ..a };
         let b = Raw { basis: b.basis.clone().or(per), ..b };
-        // both ends are of the same wrong dimension, or lack the same `per`
+        // both ends have the same wrong dimension, or lack the same `per`
         if a.dimension == b.dimension && b.dimension != Dimension::of_unit(measure.unit) {
             self.wrong_ends(&a, &b, measure, range.span);
             return None;
@@ -174,7 +174,7 @@ impl Evaluator<'_> {
         Some(ShapeKind::Ramp { from: a?, to: b?, smooth: word.text == "smooth", over })
     }
 
-    /// Refuses arguments that a word does not have: one by its place, and these by name.
+    /// Refuses arguments that a word does not have; it has one argument by place, and these by name.
     pub(super) fn arguments_of(&mut self, word: &Name, arguments: &[Argument], named: &[&str]) -> Option<()> {
         let mut seen: Vec<&str> = Vec::new();
         for (i, argument) in arguments.iter().enumerate() {
@@ -226,7 +226,7 @@ impl Evaluator<'_> {
             let Some(key) = &entry.key else {
                 self.findings.report(
                     Diagnostic::new(Code::E0406, "expected a place and its value, found a value alone")
-                        .label(entry.value.span, "where?")
+                        .label(entry.value.span, "no place given")
                         .help("write `[place: value]`"),
                 );
                 sound = false;
@@ -241,8 +241,8 @@ impl Evaluator<'_> {
                 let place = self.place(key, scope);
                 if is_profile(&value) {
                     self.findings.report(
-                        Diagnostic::new(Code::E0406, "at a place stands one value, found a profile")
-                            .label(value.span, "over which span?")
+                        Diagnostic::new(Code::E0406, "expected one value at a place, found a profile")
+                            .label(value.span, "no span given")
                             .help("key the list by spans: `[-20 .. -6 m: ..., -6 .. 0 m: ...]`"),
                     );
                     sound = false;
@@ -274,7 +274,7 @@ impl Evaluator<'_> {
         if place.dimension != Dimension::SLEEPERS {
             self.findings.report(
                 Diagnostic::new(Code::E0406, "expected a span, found a place")
-                    .label(key.span, "among spans")
+                    .label(key.span, "a place among spans")
                     .help("key the whole list by spans, or the whole list by places"),
             );
             return None;
@@ -282,7 +282,7 @@ impl Evaluator<'_> {
         Some(Reach { from: place, to: place, span: key.span })
     }
 
-    /// A profile read elsewhere, held against another field.
+    /// A profile read elsewhere, checked against another field.
     pub(super) fn rehold(&mut self, measure: &'static Measure, shape: &Shape, span: Span) -> Option<Shape> {
         let mut hold = |n: Number| {
             let basis = n.basis.map(|b| (b.to_string(), span));

@@ -13,7 +13,7 @@ use crate::syntax::tree::{Argument, Field, Item, Name, Value, ValueKind};
 use crate::units::Dimension;
 
 impl Evaluator<'_> {
-    /// Reads `random(...)`; `None` where a diagnostic has been given.
+    /// Reads `random(...)`; `None` if a diagnostic has been given.
     pub fn random(
         &mut self,
         measure: &'static Measure,
@@ -25,7 +25,7 @@ impl Evaluator<'_> {
         let Some(first) = arguments.first().filter(|a| a.name.is_none()) else {
             self.findings.report(
                 Diagnostic::new(Code::E0403, "`random` needs its mean")
-                    .label(word.span, "around which value?")
+                    .label(word.span, "no mean given")
                     .help("write something like `random(mean, cov = 10 %)`"),
             );
             return None;
@@ -64,7 +64,7 @@ impl Evaluator<'_> {
         Some(ShapeKind::Random(Random { mean, deviation, correlation, log_normal, seed, path, measure }))
     }
 
-    /// `sd` stands there once or not at all.
+    /// Checks that `sd` is given at most once.
     fn one_sd<'a>(&mut self, sds: &[&'a Argument]) -> Option<Option<&'a Argument>> {
         if let [_, again, ..] = sds {
             self.findings.report(
@@ -79,13 +79,13 @@ impl Evaluator<'_> {
     fn one_scatter(&mut self, slot: &Slot, sd: Option<&Argument>) -> Option<()> {
         let Val::Word { arguments, .. } = &slot.value else { return None };
         let (Some(sd), Some(cov)) = (sd, arguments.get("cov")) else { return Some(()) };
-        // an unknown argument has been reported, and stands for all that are missing
+        // an unknown argument has been reported; missing arguments are then not reported
         if !matches!(cov.value, Val::Error) {
             self.findings.report(
-                Diagnostic::new(Code::E0407, "`cov` and `sd` both say how much a random value scatters")
+                Diagnostic::new(Code::E0407, "`cov` and `sd` both give the scatter of a random value")
                     .label(sd.value.span, "as a value")
                     .label(cov.span, "as a share of the mean")
-                    .help("keep one way of the two"),
+                    .help("keep one of the two"),
             );
         }
         None
@@ -116,16 +116,16 @@ impl Evaluator<'_> {
         Some(raw.value * factor / mean.factor)
     }
 
-    /// Whether there is such a distribution.
+    /// Checks that the distribution exists.
     fn scatters(&mut self, mean: &Number, deviation: f64, log_normal: bool, span: Span) -> Option<()> {
         let mistake = if log_normal && mean.value <= 0.0 {
-            Diagnostic::new(Code::E0405, "a log-normal value is positive, and so is its mean")
+            Diagnostic::new(Code::E0405, "the mean of a log-normal value must be positive")
                 .label(span, "not above zero")
                 .help("`distribution = normal` takes any mean")
         } else if deviation == 0.0 {
-            Diagnostic::new(Code::E0405, "a share of a mean of zero is nothing")
-                .label(span, "nothing would scatter")
-                .help("say how much it scatters as a value: `sd = ...` instead of `cov`")
+            Diagnostic::new(Code::E0405, "a share of a mean of zero is zero")
+                .label(span, "no scatter")
+                .help("give the scatter as a value: `sd = ...` instead of `cov`")
         } else {
             return Some(());
         };

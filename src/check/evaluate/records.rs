@@ -1,4 +1,4 @@
-//! Objects: declarations and what they extend. `=` replaces a whole value, a path replaces inside it; nothing merges.
+//! Objects: declarations and their bases. `=` replaces a whole value, a path replaces inside a value; nothing merges.
 
 use super::evaluator::Evaluator;
 use super::value::{Change, Record, Slot, Val};
@@ -10,7 +10,7 @@ use crate::syntax::tree::{Declaration, Field, Item, Name, Path, ValueKind};
 use std::rc::Rc;
 
 impl Evaluator<'_> {
-    /// The object that a declaration stands for, evaluated once.
+    /// The object of a declaration, evaluated once.
     pub fn record(&mut self, id: ItemId, place: Span) -> Option<Rc<Record>> {
         if let Some(done) = self.records.get(&id).filter(|_| !self.follows(id)) {
             self.used.insert(id);
@@ -49,7 +49,7 @@ impl Evaluator<'_> {
             );
             return None;
         }
-        // `const x = 1`: the sign has been reported, with what to write instead
+        // `const x = 1`: the sign has been reported, with help
         let text = &self.files.sources.get(name.span.file).text;
         let end = text[name.span.end as usize..].find('\n').map_or(text.len(), |i| name.span.end as usize + i);
         let on_line = |s: Span| s.file == name.span.file && s.start >= name.span.end && s.end as usize <= end;
@@ -57,7 +57,7 @@ impl Evaluator<'_> {
         if foreign.any(|d| d.labels.first().is_some_and(|label| on_line(label.span))) {
             return None;
         }
-        // what is misspelt is read on as what was probably meant
+        // a misspelt kind is read as the kind that was probably meant
         let near = schema::meant_kind(&name.text);
         let help = near.map_or_else(|| Help::say("`trackbed docs` lists the kinds"), |k| Help::meant(k.name));
         self.findings.report(
@@ -68,7 +68,7 @@ impl Evaluator<'_> {
         near
     }
 
-    /// What `: base` or an object's path names, of the same kind.
+    /// The object of the same kind that `: base` or an object's path names.
     fn base(&mut self, path: &Path, kind: &'static Kind, scope: ScopeId) -> Option<Rc<Record>> {
         let target = self.resolve(path, scope, &[])?;
         let found = if target.is_let { None } else { Some(self.slot_at(&target, path)?) };
@@ -96,7 +96,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// An object before its own fields: empty, or with those of what it extends.
+    /// An object before its own fields: empty, or with the fields of its base.
     fn extended(&mut self, base: Option<&Path>, kind: &'static Kind, name: &str, span: Span, scope: ScopeId) -> Record {
         let empty = Record::empty(kind, name, span);
         let Some(path) = base else { return empty };
@@ -144,7 +144,7 @@ impl Evaluator<'_> {
         self.put(record, &change.field.path.names, &change.field, change.scope);
     }
 
-    /// A path twice in one block, or a path and a longer one inside it.
+    /// Reports a path that is given twice in one block, or a path and a longer path inside it.
     fn duplicates(&mut self, fields: &[Field]) {
         for (i, later) in fields.iter().enumerate() {
             let names = |f: &Field| f.path.names.iter().map(|n| n.text.clone()).collect::<Vec<_>>();
@@ -169,7 +169,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Giving one way to say a thing drops the inherited other ways.
+    /// A field drops inherited fields that give the same quantity in another way.
     fn drop_rivals(&self, record: &mut Record, fields: &[Field]) {
         let sets = |path: &str| fields.iter().any(|f| !is_none(f) && sets_path(f, path));
         for alternative in record.kind.alternatives {
@@ -185,9 +185,9 @@ impl Evaluator<'_> {
         }
     }
 
-    /// A field that is not known may stand for one that is: that one is not reported as missing too.
+    /// An unknown field may be a misspelt known field: the known field is then not reported as missing.
     fn excuse(&self, record: &mut Record, name: &Name, field: &Field) {
-        // nobody knows what else a stretch would have said
+        // the other fields of a stretch are unknown
         record.partial |= record.kind.plans(&name.text) || record.kind.changes().is_some();
         if record.kind.plans(&name.text) {
             return;
@@ -200,7 +200,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Follows a path into a record and replaces what is there.
+    /// Follows a path into a record and replaces the value there.
     fn put(&mut self, record: &mut Record, path: &[Name], field: &Field, scope: ScopeId) {
         let name = &path[0];
         // a line that could not be read may not begin with a name of a field at all
@@ -269,18 +269,18 @@ impl Evaluator<'_> {
                 }
             }
             Some(Val::Error | Val::Hole) => return,
-            // what it is of is not known here
+            // its basis is not known here
             _ if record.partial || record.kind.changes().is_some() => return,
             _ => {}
         }
         self.findings.report(
             Diagnostic::new(Code::E0402, format!("there is no `{}` inside `{}` to replace", name.text, known.name))
                 .label(name.span, "not found")
-                .help(format!("give the whole of it: `{} = ...`", known.name)),
+                .help(format!("give the whole value: `{} = ...`", known.name)),
         );
     }
 
-    /// The field of that name; a diagnostic where the kind has none.
+    /// The field of that name; a diagnostic if the kind has none.
     pub fn field_of(&mut self, kind: &'static Kind, name: &Name) -> Option<&'static schema::Field> {
         if let Some(field) = kind.field(&name.text) {
             return Some(field);
@@ -297,7 +297,7 @@ impl Evaluator<'_> {
         }
         let argument = || {
             let (field, word) = kind.argument(&name.text)?;
-            // a law has one form: its base says which
+            // a law has one form, given by its base
             Some(match kind.name {
                 "law" => Help::write(format!("{}.{}", field.name, name.text)).after("it is an argument of its form: "),
                 _ => {
@@ -318,7 +318,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// The place by which a declaration is known.
+/// The place that identifies a declaration.
 pub fn header(declaration: &Declaration) -> Span {
     declaration.name.as_ref().map_or(declaration.kind.span, |name| declaration.kind.span.to(name.span))
 }
@@ -332,7 +332,7 @@ pub fn object_kind(form: &Form) -> Option<&'static Kind> {
     }
 }
 
-/// Whether a field says that there is nothing, which takes the place of nothing else.
+/// Whether a field is `none`; such a field drops no other field.
 fn is_none(field: &Field) -> bool {
     matches!(&field.value.kind, ValueKind::Path(path) if path.names.len() == 1 && path.names[0].text == "none")
 }
@@ -349,8 +349,8 @@ fn sets_path(field: &Field, path: &str) -> bool {
     }
 }
 
-/// Takes the slot at a path away. A mass that goes leaves its pitch inertia behind as a radius of gyration, so that the
-/// inertia scales with the mass that takes its place.
+/// Removes the slot at a path. If a mass is removed, its pitch inertia is kept as a radius of gyration, so that the
+/// inertia scales with the new mass.
 fn remove(record: &mut Record, path: &str) {
     let Some((first, rest)) = path.split_once('.') else {
         if path == "mass" && record.kind.name == "car_body" {

@@ -1,22 +1,22 @@
-//! Values that vary along the track, as written. Where their places lie is for `places` to find, once the track is laid out.
+//! Values that vary along the track, as written. `places` finds their chainages when the track is laid out.
 
 use super::number::Number;
 use crate::diag::Span;
 use crate::schema::Measure;
 
-/// A profile with the place where it is written.
+/// A profile with its place in the text.
 #[derive(Debug, Clone)]
 pub struct Shape {
     pub kind: ShapeKind,
     pub span: Span,
-    /// The transition from which its places count, where a stretch says it.
+    /// The transition from which its places count, if a stretch gives it.
     pub from: Option<usize>,
-    /// From where to where it runs, m, where a stretch says it.
+    /// Start and end, m, if a stretch gives them.
     pub runs: Option<[f64; 2]>,
 }
 
 impl Shape {
-    /// Puts it on the ground of the stretch that uses it; one that stands already stays.
+    /// Sets the transition and the span of the stretch that uses it; a profile that has them keeps them.
     pub fn settle(&mut self, from: usize, runs: [f64; 2]) {
         self.runs.get_or_insert(runs);
         self.count_from(from);
@@ -33,7 +33,7 @@ impl Shape {
 #[derive(Debug, Clone)]
 pub enum ShapeKind {
     Constant(Number),
-    /// From one value to another over a span, or over all that is to be covered; a cubic with level ends if smooth.
+    /// From one value to another over a span, or over the whole length to cover; a cubic with level ends if smooth.
     Ramp {
         from: Number,
         to: Number,
@@ -71,9 +71,10 @@ pub struct Random {
     /// m.
     pub correlation: f64,
     pub log_normal: bool,
-    /// The seed of the scene counts where none is given.
+    /// Without a seed, the seed of the scene is used.
     pub seed: Option<u64>,
-    /// The path of the field in which it is written: what it is drawn for, whatever else stands in the file.
+    /// The path of the field in which it is written. It determines the random values, independent of the rest of the
+    /// file.
     pub path: String,
     pub measure: &'static Measure,
 }

@@ -1,4 +1,4 @@
-//! What is said of a unit that nobody knows, and counts of trains told in axles.
+//! Help for unknown units, and counts of trains converted to axles.
 
 use super::evaluator::Evaluator;
 use crate::check::text::scope::ScopeId;
@@ -6,12 +6,12 @@ use crate::diag::{Code, Diagnostic, Help, Span};
 use crate::syntax::tree::{Declaration, Item, Path, UnitText, Value, ValueKind};
 use crate::units::{UnitError, parse_unit};
 
-const SUCH: &str = "units are such as `mm`, `kN`, `MN/m`, `kN s/m`, `kg/m^3`, `km/h`, `axles`";
+const SUCH: &str = "examples of units: `mm`, `kN`, `MN/m`, `kN s/m`, `kg/m^3`, `km/h`, `axles`";
 
-/// Words for trains and vehicles, which people count in the place of axles.
+/// Words for trains and vehicles, which people count instead of axles.
 const TRAINS: [&str; 6] = ["train", "trains", "züge", "trenes", "treinen", "passages"];
 const VEHICLES: [&str; 8] = ["wagon", "wagons", "car", "cars", "vehicle", "vehicles", "coaches", "waggons"];
-/// Spans of time over which traffic is told elsewhere.
+/// Spans of time by which other sources count traffic.
 const TIMES: [&str; 12] = ["a", "y", "yr", "year", "years", "annum", "day", "d", "week", "month", "months", "jahr"];
 /// Words for `per`.
 const PER: [&str; 4] = ["pro", "par", "por", "je"];
@@ -21,7 +21,7 @@ const MILLION: [&str; 5] = ["million", "millions", "mio", "mln", "millionen"];
 /// Axles of a vehicle: two bogies of two axles each.
 const AXLES_OF_A_VEHICLE: u64 = 4;
 
-/// The mistake of a unit; `whole` is it with its number.
+/// The mistake of a unit; `whole` is the unit with its number.
 pub(super) fn unit_mistake(unit: &UnitText, error: &UnitError, whole: &str) -> Diagnostic {
     match error {
         UnitError::Unknown { symbol, instead } => {
@@ -29,7 +29,7 @@ pub(super) fn unit_mistake(unit: &UnitText, error: &UnitError, whole: &str) -> D
                 of_what(unit, symbol).or_else(|| {
                     let ours = instead.as_ref()?;
                     let mended = unit.text.replacen(symbol.as_str(), ours, 1);
-                    // other factors may be foreign too: the offer has to hold
+                    // other factors may be unknown too: the offer must be legal
                     let closed = mended.split("/axle").next().unwrap_or(&mended).to_owned();
                     Some(if ours.contains('(') { Help::say(format!("write {ours}")) } else { Help::meant(closed) })
                 })
@@ -58,7 +58,7 @@ pub(super) fn unit_mistake(unit: &UnitText, error: &UnitError, whole: &str) -> D
     }
 }
 
-/// `MN/m/seat`: the part of which a value is stands behind `per`.
+/// `MN/m/seat`: the basis of a value is written behind `per`.
 fn of_what(unit: &UnitText, symbol: &str) -> Option<Help> {
     crate::schema::basis_name(symbol).then(|| {
         let rest = unit.text.replacen(symbol, "", 1);
@@ -67,7 +67,7 @@ fn of_what(unit: &UnitText, symbol: &str) -> Option<Help> {
     })
 }
 
-/// What is written by a custom of its own: a power of ten, a million, a count in a year, another language's `per`.
+/// Special spellings: a power of ten, a million, a count per year, `per` in another language.
 fn by_custom(unit: &UnitText, symbol: &str, whole: &str) -> Option<(Span, Help)> {
     let text = unit.text.as_str();
     let start = unit.span.end.checked_sub(whole.len() as u32)?;
@@ -83,11 +83,11 @@ fn by_custom(unit: &UnitText, symbol: &str, whole: &str) -> Option<(Span, Help)>
     if let Some(rest) = text.strip_prefix("x10^") {
         let (power, unit) = rest.split_once(' ').unwrap_or((rest, ""));
         let written = format!("{digits}e{power} {unit}").trim_end().to_owned();
-        let said = format!("powers of ten stand in the number: `{digits}e{power} {unit}`");
+        let said = format!("write powers of ten in the number: `{digits}e{power} {unit}`");
         return write(Help { said, writes: vec![written] });
     }
     if text.contains(&format!("({symbol}")) {
-        return say(&format!("a remark stands behind `//`: `// {symbol}`"));
+        return say(&format!("begin a remark with `//`: `// {symbol}`"));
     }
     let lower = symbol.to_lowercase();
     if MILLION.contains(&lower.as_str()) {
@@ -99,20 +99,20 @@ fn by_custom(unit: &UnitText, symbol: &str, whole: &str) -> Option<(Span, Help)>
     }
     if let Some((counted, time)) = text.split_once('/').filter(|(_, time)| TIMES.contains(time)) {
         let counts = matches!(counted, "axles" | "MGT" | "t" | "axle");
-        let why = format!(": traffic is that of the whole run, of no {time}");
+        let why = format!(": traffic is counted for the whole run, not per {time}");
         return counts.then(|| (quantity, Help::write(format!("{digits} {counted}")).and(&why)));
     }
     if TIMES.contains(&lower.as_str()) {
-        return say("traffic is counted in `axles` or as the mass carried, `MGT`, not by the time");
+        return say("traffic is counted in `axles` or as the mass carried, `MGT`, not by time");
     }
     if let Some((before, _)) = text.split_once(&format!(" {symbol}")).filter(|_| PER.contains(&lower.as_str())) {
-        return say(&format!("what a value is of stands behind `per`: `{digits} {before} per seat`, or `per sleeper`"));
+        return say(&format!("the basis of a value follows `per`: `{digits} {before} per seat`, or `per sleeper`"));
     }
     match text {
         "axle loads" | "axle load" => write(Help::write(format!("{digits} axles"))),
         "load cycles" | "load applications" => {
             let (cycles, axles) = (format!("{digits} cycles"), format!("{digits} axles"));
-            let said = format!("write `{cycles}`, or `{axles}` where trains run");
+            let said = format!("write `{cycles}`, or `{axles}` if trains run");
             write(Help { said, writes: vec![cycles, axles] })
         }
         _ => None,
@@ -120,7 +120,7 @@ fn by_custom(unit: &UnitText, symbol: &str, whole: &str) -> Option<(Span, Help)>
 }
 
 impl Evaluator<'_> {
-    /// `1000 trains` in axles, where every train of the main file has as many.
+    /// `1000 trains` in axles, if all trains of the main file have the same number.
     pub(super) fn of_trains(&self, unit: &UnitText) -> Option<(Span, Help)> {
         let lower = unit.text.to_lowercase();
         let trains = TRAINS.contains(&lower.as_str());
@@ -132,7 +132,7 @@ impl Evaluator<'_> {
             false => ("vehicle", Some(AXLES_OF_A_VEHICLE)),
         };
         let Some(axles) = axles else {
-            return Some((unit.span, Help::say("count `axles`: a train has 4 for each of its vehicles")));
+            return Some((unit.span, Help::say("count in `axles`: each vehicle of a train has 4")));
         };
         let file = &self.files.sources.get(unit.span.file).text;
         let before = file[..unit.span.start as usize].trim_end();
@@ -152,7 +152,7 @@ impl Evaluator<'_> {
         Some((Span { start: start as u32, ..unit.span }, Help::write(written).and(&why)))
     }
 
-    /// The axles of a train, if all trains of the main file have as many.
+    /// The axles of a train, if all trains of the main file have the same number.
     fn axles_of_all_trains(&self) -> Option<u64> {
         let items = self.scopes[self.main].tree.items.iter();
         let trains = items.filter_map(|item| match item {
@@ -164,7 +164,7 @@ impl Evaluator<'_> {
         <[u64; 1]>::try_from(axles).ok().map(|[axles]| axles)
     }
 
-    /// The axles of a train as it is written, or as what it extends is.
+    /// The axles of a train as written, or of its base.
     fn axles_of(&self, train: &Declaration, scope: ScopeId, depth: u32) -> Option<u64> {
         if let Some(field) = train.fields.iter().find(|f| f.path.text() == "vehicles") {
             return Some(AXLES_OF_A_VEHICLE * vehicles(&field.value)?);
@@ -187,7 +187,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// How many vehicles a value of `train.vehicles` names.
+/// The number of vehicles in a value of `train.vehicles`.
 fn vehicles(value: &Value) -> Option<u64> {
     let ValueKind::List { entries, .. } = &value.kind else { return Some(1) };
     let count = |value: &Value| match value.kind {

@@ -1,4 +1,4 @@
-//! Checked values: what a field holds once its text has been understood.
+//! Checked values: the content of a field after its text has been understood.
 
 use super::number::Number;
 use super::shape::Shape;
@@ -36,8 +36,8 @@ pub enum Val {
     /// A number that varies along the track.
     Profile(Rc<Shape>),
     Response(Response),
-    /// What is asked of the scene, as written, and where its names are looked up: places and counts in it mean something
-    /// once the track is laid out and the traffic is known.
+    /// A question about the scene, as written, and the scope of its names. Its places and counts are evaluated when the
+    /// track is laid out and the traffic is known.
     Written(Rc<Value>, ScopeId),
     /// `?`, reported as a warning.
     Hole,
@@ -46,7 +46,7 @@ pub enum Val {
 }
 
 impl Val {
-    /// What it looks like, for a message.
+    /// The kind of value, for a message.
     pub fn describe(&self) -> &'static str {
         match self {
             Val::Number(_) => "a number",
@@ -68,16 +68,16 @@ impl Val {
 #[derive(Debug, Clone)]
 pub struct Record {
     pub kind: &'static Kind,
-    /// Its declared name; of an object in place, that of what it extends, else the kind's.
+    /// Its declared name; for an object in place the name of its base, else the name of the kind.
     pub name: String,
-    /// Where it stands: the header of a declaration, or the whole object.
+    /// Its place: the header of a declaration, or the whole object.
     pub span: Span,
     pub fields: BTreeMap<&'static str, Slot>,
-    /// Where the objects stand that it extends, the nearest first.
+    /// Places of the objects that it extends, the nearest first.
     pub bases: Vec<Span>,
-    /// Part of it could not be understood and has been reported, so that nobody knows what is missing.
+    /// A part could not be understood and has been reported, so that missing fields are not known.
     pub partial: bool,
-    /// What it says of objects of another kind, in order, those of what it extends first.
+    /// Its changes to objects of another kind, in order; changes of its base come first.
     pub changes: Vec<Change>,
 }
 
@@ -85,18 +85,18 @@ pub struct Record {
 #[derive(Debug, Clone)]
 pub struct Change {
     pub field: Field,
-    /// Where its names are looked up.
+    /// The scope of its names.
     pub scope: ScopeId,
 }
 
 impl Record {
-    /// An object that says nothing yet.
+    /// An object without fields.
     pub fn empty(kind: &'static Kind, name: &str, span: Span) -> Record {
         let (fields, bases, changes) = (BTreeMap::new(), Vec::new(), Vec::new());
         Record { kind, name: name.to_string(), span, fields, bases, partial: false, changes }
     }
 
-    /// Notes that it lacks something, unless part of it could not be understood.
+    /// Notes a missing part, unless a part could not be understood.
     pub fn lacks(&self, what: &str, mistake: Diagnostic, findings: &mut Findings) {
         if !self.partial {
             findings.lacks(self.span, &self.bases, what, mistake);
@@ -151,7 +151,7 @@ impl Record {
         }
     }
 
-    /// Whether a field stands there and could not be understood, or is a hole.
+    /// Whether a field is given but could not be understood, or is a hole.
     pub fn unknown(&self, name: &str) -> bool {
         matches!(self.slot(name).map(|s| &s.value), Some(Val::Error | Val::Hole))
     }

@@ -1,4 +1,4 @@
-//! Words that a field knows: enumerations, variants with arguments, responses and rules.
+//! Words of a field: enumerations, variants with arguments, responses and rules.
 
 use super::evaluator::Evaluator;
 use super::value::{Slot, Val};
@@ -83,14 +83,17 @@ impl Evaluator<'_> {
             let place = first.value.span.to(second.value.span);
             let help = Help::write(format!("{from} .. {to}")).after("from one to the other: ");
             self.findings.report(
-                Diagnostic::new(Code::E0406, format!("`{}` begins with a range, found two numbers", word.name))
-                    .label(place, "two numbers")
-                    .advise(place, help),
+                Diagnostic::new(
+                    Code::E0406,
+                    format!("the first argument of `{}` is a range, found two numbers", word.name),
+                )
+                .label(place, "two numbers")
+                .advise(place, help),
             );
             return None;
         }
         let mut slots = BTreeMap::new();
-        // what could not be read may have run on into the next argument
+        // unreadable text may continue into the next argument
         let mut unknown = arguments.iter().any(|argument| argument.value.kind == ValueKind::Error);
         for (i, argument) in arguments.iter().enumerate() {
             let field = match &argument.name {
@@ -104,7 +107,7 @@ impl Evaluator<'_> {
                 let near = argument.name.as_ref().and_then(|n| called(Names::Fields, &n.text, known));
                 let help = match near {
                     Some(near) => Help::meant(near),
-                    None if names.is_empty() => Help::say("it takes none"),
+                    None if names.is_empty() => Help::say("it takes no arguments"),
                     None => Help::say(format!("it takes {}", or_list(&names))),
                 };
                 self.findings.report(
@@ -126,7 +129,7 @@ impl Evaluator<'_> {
             }
         }
         if unknown {
-            // it may stand for one that seems to be missing
+            // it may be a misspelt argument that seems to be missing
             let origin = self.origin(name.span, scope);
             for argument in word.arguments {
                 slots.entry(argument.name).or_insert(Slot { value: Val::Error, span: name.span, origin });

@@ -1,4 +1,4 @@
-//! Values as text, before any field reads them: what they look like, and which of them are profiles.
+//! Values as text, before any field reads them: their kind, and whether they are profiles.
 
 use crate::diag::Span;
 use crate::syntax::tree::{UnitText, Value, ValueKind};
@@ -40,7 +40,7 @@ pub fn with_unit(value: &Value, unit: Option<&UnitText>) -> Value {
     Value { kind, span: value.span }
 }
 
-/// What a value looks like, for a message.
+/// The kind of a value, for a message.
 pub fn looks_like(kind: &ValueKind) -> &'static str {
     match kind {
         ValueKind::Number { .. } | ValueKind::Binary(..) | ValueKind::Negate(_) | ValueKind::Per(..) => "a number",

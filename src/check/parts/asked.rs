@@ -1,18 +1,18 @@
-//! What the scene asks of the model under the sleepers, and what its parts have to bring along for it.
+//! The model under the sleepers that the scene needs, and the parts that are therefore required.
 
 use crate::check::evaluate::value::{Record, Val};
 use crate::scenario::Tier;
 
-/// What the parts of a track have to bring along.
+/// Requirements for the parts of a track.
 #[derive(Debug, Clone, Copy)]
 pub struct Asked {
-    /// Grains give the stiffness of the supports: layers without a modulus do instead of a `support`.
+    /// Grains give the stiffness of the supports: layers without a modulus may replace a `support`.
     pub layers_do: bool,
-    /// Only test loads on sleepers, or on the bed itself, act, or what acts is not said yet: a rail is not needed.
+    /// Only test loads on sleepers or on the bed act, or the load is not given yet: a rail is not needed.
     pub rig: bool,
     /// A plate lies on the bed: sleepers are not needed either.
     pub plate: bool,
-    /// Trains run: what is counted is axles.
+    /// Trains run, so counts are axles.
     pub traffic: bool,
 }
 
@@ -28,18 +28,18 @@ pub fn tier(solve: &Record) -> Tier {
 }
 
 impl Asked {
-    /// Reads what a scene asks from its complete records.
+    /// Reads the requirements of a scene from its complete records.
     pub fn by_scene(solve: &Record, track: &Record, traffic: bool, loads: &[Record]) -> Asked {
         let tier = tier(solve);
         let by_layers = tier == Tier::Auto && forms(track).any(stands_on_grains);
         let layers_do = tier.has_grains() || by_layers;
-        // what could not be understood may be any of them
+        // a value that was not understood may be any of them
         let on = |load: &Record, words: &[&str]| {
             load.unknown("on") || load.word("on").is_some_and(|word| words.contains(&word))
         };
         let under_load = !loads.is_empty() && loads.iter().all(|load| on(load, &["sleepers", "bed"]));
         let all_on_bed = !loads.is_empty() && loads.iter().all(|load| on(load, &["bed"]));
-        // what is not said yet is asked for itself, and not by way of rails and pads that a rig does without
+        // a missing load is reported itself, not as missing rails and pads, which a rig does not need
         let unsaid = match loads {
             [] => tier.has_grains(),
             loads => loads.iter().any(|load| load.word("on").is_none()),
@@ -73,7 +73,7 @@ pub fn stands_on_layers(form: &Record) -> bool {
     has_layers(form) && none("slab") && none("support") && form.word("support") != Some("rigid")
 }
 
-/// Whether only grains can say how stiff those layers are.
+/// Whether only grains can give the stiffness of the layers.
 pub fn stands_on_grains(form: &Record) -> bool {
     let Some(Val::Pairs(pairs)) = form.get("layers").map(|slot| &slot.value) else { return false };
     let without = |record: &Record| record.kind.name == "granular" && record.get("youngs_modulus").is_none();

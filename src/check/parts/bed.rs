@@ -29,10 +29,10 @@ pub fn bed(track: &Record, forms: &[Built], findings: &mut Findings) -> Option<B
     })
 }
 
-/// Sleepers with their shoulders, as the bed has to hold them.
+/// Sleepers with their shoulders, which must fit into the bed.
 struct Footing<'a> {
     trackform: &'a str,
-    /// Length of the sleepers, m, and where it is given.
+    /// Length of the sleepers, m, and its place in the text.
     length: f64,
     length_span: Option<Span>,
     shoulder: Option<Given>,
@@ -54,7 +54,7 @@ impl Footing<'_> {
         self.length / 2.0 + self.shoulder.map_or(0.0, |shoulder| *shoulder)
     }
 
-    /// The mistake of a bed of a half width, m, which stands there.
+    /// The mistake of a bed with a half width, m, given at a place.
     fn too_wide_for(&self, half: f64, stated: Span) -> Diagnostic {
         let beside =
             self.shoulder.map_or(String::new(), |shoulder| format!(", with shoulders of {} m", number(*shoulder)));

@@ -1,4 +1,4 @@
-//! Grains between the sleepers of a trackform and beyond their ends, held against its sleepers and layers.
+//! Grains between the sleepers of a trackform and beyond their ends, checked against its sleepers and layers.
 
 use super::given::given;
 use super::material::Ground;
@@ -9,26 +9,27 @@ use crate::diag::{Code, Diagnostic};
 use crate::scenario::{Crib, Given};
 use crate::units::number;
 
-/// The cribs of a trackform with these layers, as far as these are understood; `None` where it has none, or where they cannot be.
+/// The cribs of a trackform with these layers, as far as they are understood; `None` if it has none, or if they are
+/// impossible.
 pub fn crib(form: &Record, layers: Option<&[Stratum]>, findings: &mut Findings) -> Option<Crib> {
     let shoulder = given(form, "shoulder");
     let Some(height) = given(form, "crib") else {
         shoulder_alone(form, shoulder, findings);
         return None;
     };
-    // a slab and a rigid support refuse it themselves
+    // a crib on a slab or a rigid support is reported elsewhere
     let on_sleepers = form.record("slab").is_none() && form.word("support") != Some("rigid");
     let fits = [has_sleepers(form, on_sleepers, findings), is_no_higher(form, height, findings)];
     let filled = !on_sleepers || has_grains(form, layers, findings);
     (on_sleepers && filled && fits == [true; 2]).then_some(Crib { height, shoulder })
 }
 
-/// A shoulder is as high as the crib, and needs one.
+/// Refuses a shoulder without a crib, because a shoulder is as high as the crib.
 fn shoulder_alone(form: &Record, shoulder: Option<Given>, findings: &mut Findings) {
     let (Some(_), Some(slot), false) = (shoulder, form.get("shoulder"), form.unknown("crib")) else { return };
     let mistake =
         Diagnostic::new(Code::E0403, format!("trackform `{}` has a `shoulder` and needs a `crib`", form.name))
-            .label(slot.span, "how high is it?")
+            .label(slot.span, "its height is not given")
             .help("write `crib = 150 mm` too: the shoulder is as high as the grains between the sleepers");
     findings.report(mistake);
 }
@@ -41,13 +42,13 @@ fn has_sleepers(form: &Record, on_sleepers: bool, findings: &mut Findings) -> bo
     let message = format!("trackform `{}` has a `crib` and no sleepers", form.name);
     findings.report(
         Diagnostic::new(Code::E0407, message)
-            .label(span, "between which sleepers?")
+            .label(span, "there are no sleepers")
             .help("give the trackform a `sleeper`, or write `crib = none`"),
     );
     false
 }
 
-/// Grains lie beside sleepers and not on them.
+/// Checks that the crib is not higher than the sleepers.
 fn is_no_higher(form: &Record, height: Given, findings: &mut Findings) -> bool {
     let Some(sleeper) = form.record("sleeper") else { return true };
     let Some(most) = sleeper.number("height").map(|n| n.value) else { return true };
@@ -69,7 +70,7 @@ fn is_no_higher(form: &Record, height: Given, findings: &mut Findings) -> bool {
     false
 }
 
-/// The top layer of grains fills the cribs.
+/// Checks that there is a layer of grains to fill the cribs.
 fn has_grains(form: &Record, layers: Option<&[Stratum]>, findings: &mut Findings) -> bool {
     let granular = |layer: &Stratum| matches!(layer.ground, Ground::Granular(..));
     if layers.is_none_or(|layers| layers.iter().any(granular)) {
@@ -77,9 +78,9 @@ fn has_grains(form: &Record, layers: Option<&[Stratum]>, findings: &mut Findings
     }
     let span = form.get("crib").map_or(form.span, |slot| slot.span);
     let message = format!("trackform `{}` has a `crib` and no layer of grains to fill it", form.name);
-    let mut mistake = Diagnostic::new(Code::E0407, message).label(span, "filled with what?");
+    let mut mistake = Diagnostic::new(Code::E0407, message).label(span, "no grains to fill it");
     if let Some(slot) = form.get("layers") {
-        mistake = mistake.label(slot.span, "no grains");
+        mistake = mistake.label(slot.span, "no grains here");
     }
     findings.report(mistake.help("give the trackform `layers` with a `granular`, or write `crib = none`"));
     false

@@ -1,4 +1,4 @@
-//! Forces of a test load from a data file: times that ascend, each with a force in the range of constant ones.
+//! Forces of a test load from a data file: ascending times, each with a force in the range of constant forces.
 
 use crate::check::evaluate::value::{Slot, Val};
 use crate::check::findings::Findings;
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// The largest force of a load, N.
 const LARGEST: f64 = 1e7;
 
-/// Reads `file("force.csv")`: times, s, and forces, N, as they stand there; `None` where a diagnostic has been given.
+/// Reads `file("force.csv")`: times, s, and forces, N, as given there; `None` if a diagnostic has been given.
 pub fn force_history(
     arguments: &BTreeMap<&'static str, Slot>,
     whole: Span,
@@ -50,8 +50,8 @@ pub fn force_history(
         let (at, value) = (cells[time], cells[force]);
         if let Some(before) = last.filter(|before| before.value >= at.value) {
             findings.report(
-                Diagnostic::new(Code::E0510, "the times of a data file ascend from row to row")
-                    .label(at.span, "not after the row before")
+                Diagnostic::new(Code::E0510, "the times of a data file must ascend from row to row")
+                    .label(at.span, "not later than in the row before")
                     .label(before.span, "the row before")
                     .label(whole, "read here"),
             );
@@ -69,7 +69,7 @@ pub fn force_history(
         history.push([at.value, value.value]);
     }
     if history.len() < 2 {
-        let message = format!("expected two rows of numbers or more, found {}", history.len());
+        let message = format!("expected at least two rows of numbers, found {}", history.len());
         let mistake = Diagnostic::new(Code::E0510, message).label(table.header, "too few rows below");
         findings.report(mistake.label(whole, "read here"));
         return None;

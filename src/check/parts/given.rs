@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// Arguments of a word by name.
 pub type Arguments = BTreeMap<&'static str, Slot>;
 
-/// A number of one rail with its origin; `None` where none stands there.
+/// A number of one rail with its origin; `None` if there is none.
 pub fn given(record: &Record, field: &str) -> Option<Given> {
     let slot = record.slot(field)?;
     match slot.value {
@@ -27,7 +27,7 @@ pub fn argument(arguments: &Arguments, name: &str) -> Option<Given> {
     }
 }
 
-/// The first of several ways to say one thing; those that are given must agree within 2 %.
+/// The first of several ways to give one quantity; the given ways must agree within 2 %.
 pub fn agree(
     record: &Record,
     what: &str,
@@ -44,11 +44,11 @@ pub fn agree(
         findings.report(
             Diagnostic::new(
                 Code::E0407,
-                format!("the {what} of {} `{}` is said twice and differs", record.kind.name, record.name),
+                format!("the {what} of {} `{}` is given twice with different values", record.kind.name, record.name),
             )
             .label(span, format!("{}: {}", known[0].0, show(first)))
             .label(record.span, format!("{name}: {}", show(*other)))
-            .help("keep one way of the two"),
+            .help("keep one of the two"),
         );
     }
     Some(first)

@@ -1,4 +1,4 @@
-//! Gradings: the sieve curve, whether it is one, and how much of it the cuts leave.
+//! Gradings: the sieve curve, checks of the curve, and the part that the cuts leave.
 
 use super::given::given;
 use crate::check::evaluate::value::{Record, Slot, Val};
@@ -8,12 +8,12 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Given, Grading, Passing};
 use crate::units::{Dimension, number};
 
-/// Below this share the modelled grains are not the material any more.
+/// Below this share of the mass the modelled grains no longer represent the material.
 const LEAST_SHARE: f64 = 0.5;
-/// Shares of mass closer than this are one.
+/// Shares of mass that differ by less are equal.
 const TINY: f64 = 1e-9;
 
-/// A sieve: its size, m, the share that passes, and where it stands.
+/// A sieve: its size, m, the share that passes, and its place in the text.
 #[derive(Clone, Copy)]
 struct Sieve {
     size: f64,
@@ -68,7 +68,7 @@ fn passing(
     Some(Passing::Sieves(sieves.iter().map(|sieve| [sieve.size, sieve.share]).collect()))
 }
 
-/// A log-normal curve has no smallest and no largest grain: the cuts say them.
+/// A log-normal curve has no smallest and no largest grain: the cuts give them.
 fn log_normal(
     median: f64,
     spread: f64,
@@ -135,7 +135,7 @@ fn sieves_of(name: &str, span: Span, files: &mut Files<'_>, findings: &mut Findi
     Some(sieves).filter(|_| sound)
 }
 
-/// Sizes ascend, shares do not fall, and the curve says the size of every grain that is modelled.
+/// Checks that sizes ascend, that shares do not fall, and that the curve gives the size of every modelled grain.
 fn is_a_curve(sieves: &[Sieve], whole: Span, cuts: [Option<Option<Given>>; 2], findings: &mut Findings) -> Option<()> {
     let [Some(first), Some(last)] = [sieves.first(), sieves.last()].map(|end| end.filter(|_| sieves.len() > 1)) else {
         findings.report(
@@ -149,7 +149,7 @@ fn is_a_curve(sieves: &[Sieve], whole: Span, cuts: [Option<Option<Given>>; 2], f
         let sieve = |s: &Sieve| format!("{} mm: {} %", number(s.size * 1e3), percent(s.share));
         let ascending: Vec<String> = sieves.iter().rev().map(sieve).collect();
         findings.report(
-            Diagnostic::new(Code::E0414, "the sizes of a grading ascend")
+            Diagnostic::new(Code::E0414, "the sizes of a grading must ascend")
                 .label(whole, "from coarse to fine")
                 .write(whole, format!("[{}]", ascending.join(", "))),
         );
@@ -158,24 +158,27 @@ fn is_a_curve(sieves: &[Sieve], whole: Span, cuts: [Option<Option<Given>>; 2], f
     let mut sound = true;
     for pair in sieves.windows(2) {
         let mistake = if pair[1].size <= pair[0].size {
-            "the sizes of a grading ascend".to_string()
+            "the sizes of a grading must ascend".to_string()
         } else if pair[1].share < pair[0].share - TINY {
             let [coarse, fine] = [pair[1], pair[0]].map(|s| (percent(s.share), number(s.size * 1e3)));
-            format!("a sieve of {} mm passes {} %, a finer one of {} mm {} %", coarse.1, coarse.0, fine.1, fine.0)
+            format!(
+                "a sieve of {} mm passes {} %, but a finer sieve of {} mm passes {} %",
+                coarse.1, coarse.0, fine.1, fine.0
+            )
         } else {
             continue;
         };
         sound = false;
         findings.report(
             Diagnostic::new(Code::E0414, mistake)
-                .label(pair[1].span, "not beyond the one before")
-                .label(pair[0].span, "the one before")
+                .label(pair[1].span, "not greater than the sieve before")
+                .label(pair[0].span, "the sieve before")
                 .help("list the sieves from fine to coarse, each with the share of the mass that passes it"),
         );
     }
     let cut = |i: usize| cuts[i].flatten().map(|cut: Given| *cut);
     let (low, high) = (cut(0).is_some_and(|c| c >= first.size), cut(1).is_some_and(|c| c <= last.size));
-    // a cut that is not understood may be the one that is missing
+    // a cut that is not understood may be the missing cut
     if sound && first.share > TINY && !low && cuts[0].is_some() {
         sound = false;
         let [size, share] = [number(first.size * 1e3), percent(first.share)];
@@ -183,7 +186,7 @@ fn is_a_curve(sieves: &[Sieve], whole: Span, cuts: [Option<Option<Given>>; 2], f
             Diagnostic::new(Code::E0414, format!("{share} % of the mass is finer than the finest sieve"))
                 .label(first.span, "the finest sieve")
                 .help(format!(
-                    "begin with a size that nothing passes, such as `{} mm: 0 %`, or write `cut_below = {size} mm`",
+                    "begin with a size that no grain passes, such as `{} mm: 0 %`, or write `cut_below = {size} mm`",
                     number((first.size * 500.0 * 1e3).round() / 1e3)
                 )),
         );
@@ -194,13 +197,13 @@ fn is_a_curve(sieves: &[Sieve], whole: Span, cuts: [Option<Option<Given>>; 2], f
         findings.report(
             Diagnostic::new(Code::E0414, format!("{share} % of the mass is coarser than the coarsest sieve"))
                 .label(last.span, "the coarsest sieve")
-                .help(format!("end with a size that everything passes, or write `cut_above = {size} mm`")),
+                .help(format!("end with a size that all grains pass, or write `cut_above = {size} mm`")),
         );
     }
     sound.then_some(())
 }
 
-/// Cuts leave grains, and enough of them to be the material.
+/// Checks that the cuts leave grains, and enough grains to represent the material.
 fn leaves_grains(record: &Record, grading: &Grading, findings: &mut Findings) -> Option<()> {
     let spans: Vec<Span> = ["cut_below", "cut_above"].iter().filter_map(|f| record.get(f)?.origin.span()).collect();
     let at = |diagnostic: Diagnostic, text: &str| match spans.split_first() {
@@ -212,7 +215,7 @@ fn leaves_grains(record: &Record, grading: &Grading, findings: &mut Findings) ->
     let share = if grading.smallest() < grading.largest() { grading.modelled_share() } else { 0.0 };
     if share < TINY {
         let ends = format!("its grains reach from {} mm to {} mm", mm(finest), mm(coarsest));
-        let mistake = Diagnostic::new(Code::E0415, format!("the cuts leave nothing of grading `{name}`"));
+        let mistake = Diagnostic::new(Code::E0415, format!("the cuts leave no grains of grading `{name}`"));
         let help = if coarsest.is_finite() { ends } else { "make `cut_below` smaller than `cut_above`".into() };
         findings.report(at(mistake, "cut here").help(help));
         return None;
@@ -227,13 +230,13 @@ fn leaves_grains(record: &Record, grading: &Grading, findings: &mut Findings) ->
         );
         findings.report(
             at(Diagnostic::new(Code::E0416, message), "cut here")
-                .help("what is left out fills the pores and carries load; say so beside the results, or cut less"),
+                .help("the omitted grains fill pores and carry load: state the cuts with the results, or cut less"),
         );
     }
     Some(())
 }
 
-/// A cut, `Some(None)` where there is none; `None` where it is not understood.
+/// A cut, `Some(None)` if there is none; `None` if it is not understood.
 fn cut(record: &Record, field: &str) -> Option<Option<Given>> {
     match record.get(field).map(|slot| &slot.value) {
         Some(Val::Number(_)) => Some(given(record, field)),

@@ -1,4 +1,4 @@
-//! What lies under each seat, and what stretches make of it.
+//! The ground under each seat, and its changes by stretches.
 
 use super::asked::Asked;
 use super::layers::lay_strata;
@@ -14,30 +14,30 @@ use std::ops::Range;
 /// The ground of some seats.
 #[derive(Clone, Copy)]
 pub enum Under<'a> {
-    /// The layers of their section; `None` where they are not understood.
+    /// The layers of their section; `None` if they are not understood.
     Section(Option<&'a [Layer]>),
     Regraded(&'a Regrade<'a>),
 }
 
-/// What a stretch changes of the layers under some seats.
+/// Changes of the layers under some seats by a stretch.
 pub struct Regrade<'a> {
     /// The layers of the section.
     pub before: &'a [Layer],
     pub plate: Option<ApproachSlab>,
-    /// Whether the stretch changes what carries and leaves the stated `support` as it is: the support changes as the layers do.
+    /// Whether the stretch changes layers but not the stated `support`; the support then changes with the layers.
     pub scales: bool,
 }
 
-/// What the ground of a track has to bring along.
+/// Requirements for the ground of a track.
 #[derive(Clone, Copy)]
 pub struct Carrying {
     pub asked: Asked,
-    /// Damping over stiffness of a support that layers make, s.
+    /// Damping over stiffness of a support that is computed from layers, s.
     pub damping_time: Option<Given>,
 }
 
-/// What lies under some seats of a section; empty where there are none, or where a modulus is not known and nothing
-/// depends on it.
+/// The layers under some seats of a section; empty without layers, or if a modulus is not known and nothing depends on
+/// it.
 pub fn stacks(
     built: &Built,
     places: &Places,
@@ -76,7 +76,7 @@ pub fn stacks(
     seats.map(at_seat).collect()
 }
 
-/// Whether every layer has a modulus; `None` where one has none and something depends on it.
+/// Whether every layer has a modulus; `None` if a modulus is missing and something depends on it.
 fn knows_moduli(
     built: &Built,
     strata: &[Stratum],
@@ -97,11 +97,16 @@ fn knows_moduli(
     if unknown.is_empty() {
         let name = before.map_or("", |layer| layer.name.as_str());
         let message = format!(
-            "granular `{name}` under the stretch needs its `youngs_modulus`: the support changes as the layers do"
+            "granular `{name}` under the stretch needs its `youngs_modulus`: the support changes with the layers"
         );
-        findings.report(Diagnostic::new(Code::E0419, message).label(built.layers_span, "compared with the layers under them").help(
-            "add `youngs_modulus = 110 MPa` to it (ballast of Zhai, Wang and Lin 2004), or let the stretch state its `support`",
-        ));
+        findings.report(
+            Diagnostic::new(Code::E0419, message)
+                .label(built.layers_span, "compared with the layers under the stretch")
+                .help(
+                    "add `youngs_modulus = 110 MPa` to it (ballast of Zhai, Wang and Lin 2004), or let the stretch \
+                     state its `support`",
+                ),
+        );
     }
     unknown.into_iter().for_each(|stratum| without_modulus(&built.name, stratum, findings));
     None
@@ -112,12 +117,15 @@ fn without_modulus(form: &str, stratum: &Stratum, findings: &mut Findings) {
     findings.report(
         Diagnostic::new(
             Code::E0419,
-            format!("granular `{name}` needs its `youngs_modulus`: the layers of trackform `{form}` carry its sleepers"),
+            format!(
+                "granular `{name}` needs its `youngs_modulus`: the layers of trackform `{form}` carry its sleepers"
+            ),
         )
-        .label(at, "grains know contacts, not a modulus")
-        .label(used, "computed from here down")
+        .label(at, "no modulus given")
+        .label(used, "the support is computed from these layers")
         .help(
-            "add `youngs_modulus = 110 MPa` to it (ballast of Zhai, Wang and Lin 2004), or state the trackform's `support`",
+            "add `youngs_modulus = 110 MPa` to it (ballast of Zhai, Wang and Lin 2004), or state the trackform's \
+             `support`",
         ),
     );
 }

@@ -1,4 +1,4 @@
-//! What stretches do to the ground along the track: layers of their own, and approach slabs in them.
+//! Changes of the ground by stretches along the track: other layers, and approach slabs in the layers.
 
 use super::asked::Asked;
 use super::layers::{TOLERANCE, depth, hold_their_grains, lay_strata, mm};
@@ -12,7 +12,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::scenario::{Groundwork, Layer};
 use std::ops::Range;
 
-/// The ground of a section where stretches change it.
+/// The ground of a section that stretches change.
 pub fn groundworks(
     form: &Record,
     stood: &[Instance],
@@ -22,7 +22,7 @@ pub fn groundworks(
     asked: Asked,
     eval: &mut Evaluator<'_>,
 ) -> Option<Vec<Groundwork>> {
-    // a stretch over a slab is refused where its seats are changed
+    // a stretch over a slab is refused when its seats are changed
     if form.record("slab").is_some() {
         return Some(Vec::new());
     }
@@ -68,19 +68,19 @@ pub fn has_ground(instance: &Instance, form: &Record, findings: &mut Findings) -
     let set = instance.stretch.get(if instance.sets("layers") { "layers" } else { "approach_slab" });
     let Some(slot) = set.filter(|_| instance.regrades()) else { return Some(()) };
     let message = format!(
-        "stretch `{}` changes the ground, but trackform `{}` does not say what lies under its sleepers",
+        "stretch `{}` changes the ground, but trackform `{}` gives no layers under its sleepers",
         instance.stretch.name, form.name
     );
     findings.report(
         Diagnostic::new(Code::E0418, message)
-            .label(slot.span, "in the place of what?")
+            .label(slot.span, "there are no layers to change")
             .label(form.span, "no `layers`")
-            .help("give the trackform its `layers`; its `support` may stay beside them and changes as they do"),
+            .help("give the trackform its `layers`; its `support` may stay and changes with the layers"),
     );
     None
 }
 
-/// The track keeps its level: what a stretch puts under the sleepers is as deep as what was there.
+/// Checks that the layers of a stretch are as deep as the layers that they replace, because the track keeps its level.
 fn goes_as_deep(
     instance: &Instance,
     built: &Built,
@@ -98,7 +98,7 @@ fn goes_as_deep(
     let x = places.seats[seat].0;
     let (own, under) = (depth(layers, x), depth(before, x));
     let message = format!(
-        "the layers of stretch `{}` are {} mm deep at {}, those of trackform `{}` {} mm",
+        "the layers of stretch `{}` are {} mm deep at {}, but the layers of trackform `{}` are {} mm deep",
         instance.stretch.name,
         mm(own),
         places.named(&(seat..seat + 1)),
@@ -107,13 +107,16 @@ fn goes_as_deep(
     );
     findings.report(
         Diagnostic::new(Code::E0424, message)
-            .label(instance.stretch.get("layers").map_or(instance.over(), |slot| slot.span), "of another depth")
-            .help("write `rest` for the thickness of one layer: it takes what is left; a track on ground of another depth is a section of its own"),
+            .label(instance.stretch.get("layers").map_or(instance.over(), |slot| slot.span), "different depth")
+            .help(
+                "write `rest` for the thickness of one layer, which then fills the depth; make a section of its own \
+                 for ground of another depth",
+            ),
     );
     false
 }
 
-/// A plate lies in layers.
+/// Checks that an approach slab lies in layers.
 fn holds_the_plate(
     instance: &Instance,
     layers: &[Layer],
@@ -127,14 +130,14 @@ fn holds_the_plate(
         return true;
     };
     let message = format!(
-        "the approach slab of stretch `{}` reaches {} mm below the sleepers, the layers at {} {} mm",
+        "the approach slab of stretch `{}` reaches {} mm below the sleepers, but the layers at {} reach {} mm",
         instance.stretch.name,
         mm(bottom),
         places.named(&(seat..seat + 1)),
         mm(depth(layers, places.seats[seat].0))
     );
     let help = if layers.is_empty() {
-        "give the trackform `layers` for the slab to lie in"
+        "give the trackform `layers` around the slab"
     } else {
         "lay it higher with a smaller `depth`, or make the lowest layer deeper"
     };

@@ -8,7 +8,7 @@ use crate::solvers::settlement::{CyclePer, Form, Law, Logarithm};
 use crate::units::{Dimension, number};
 use std::collections::BTreeMap;
 
-/// The law that drives the run and those beside it.
+/// The law that drives the run and the laws beside it.
 pub fn laws(slot: &Slot, findings: &mut Findings) -> Option<(SettlementLaw, Vec<SettlementLaw>)> {
     let slots = match &slot.value {
         Val::List(slots) => slots.as_slice(),
@@ -17,7 +17,7 @@ pub fn laws(slot: &Slot, findings: &mut Findings) -> Option<(SettlementLaw, Vec<
     };
     if slots.is_empty() {
         findings.report(
-            Diagnostic::new(Code::E0403, "`law` needs a law")
+            Diagnostic::new(Code::E0403, "`law` needs at least one law")
                 .label(slot.span, "empty")
                 .help("write `law = laws.varandas_2014`"),
         );
@@ -31,7 +31,7 @@ pub fn laws(slot: &Slot, findings: &mut Findings) -> Option<(SettlementLaw, Vec<
                 findings.report(
                     Diagnostic::new(Code::E0404, format!("two laws are called `{}`", law.name))
                         .label(slot.span, "again here")
-                        .help("declare the second one under a name of its own: `law other : laws.NAME { ... }`"),
+                        .help("declare the second law under another name: `law other : laws.NAME { ... }`"),
                 );
                 sound = false;
             }
@@ -72,7 +72,7 @@ fn settlement_law(slot: &Slot, findings: &mut Findings) -> Option<SettlementLaw>
     Some(SettlementLaw { name: record.name.clone(), law, loads, cycles, origin: slot.origin })
 }
 
-/// What one argument allows may contradict another.
+/// Checks that the arguments do not contradict each other.
 fn consistent(form: &mut Form, arguments: &BTreeMap<&'static str, Slot>, findings: &mut Findings) -> Option<()> {
     match form {
         Form::Nasrollahi(law) if law.final_threshold < law.initial_threshold => {
@@ -87,7 +87,7 @@ fn consistent(form: &mut Form, arguments: &BTreeMap<&'static str, Slot>, finding
                     ),
                 )
                 .label(span("final_threshold")?, "the threshold of a support that has settled")
-                .label(span("initial_threshold")?, "of a fresh one")
+                .label(span("initial_threshold")?, "the threshold of a fresh support")
                 .help("a law that hardens has `final_threshold` at or above `initial_threshold`"),
             );
             None

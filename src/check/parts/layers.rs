@@ -12,9 +12,9 @@ use crate::scenario::{Curve, Given, Granular, Layer, Material, Origin, Piece, Pr
 use crate::units::number;
 use std::ops::Range;
 
-/// Grains across a layer below which it is no layer.
+/// Least number of grains across a layer.
 const FEWEST_GRAINS: f64 = 2.0;
-/// Depths that differ by less are one, m.
+/// Depths that differ by less are equal, m.
 pub const TOLERANCE: f64 = 1e-3;
 
 /// Depth of the lowest layer's bottom, m.
@@ -27,8 +27,8 @@ pub fn mm(length: f64) -> String {
     number((length * 1e4).round() / 10.0)
 }
 
-/// The layers of a trackform under some seats of a section. `before` are those of the section, where a stretch takes their
-/// place.
+/// The layers of a trackform under some seats of a section. `before` are the layers of the section that a stretch
+/// replaces.
 pub fn lay_strata(
     built: &Built,
     places: &Places,
@@ -87,9 +87,9 @@ pub fn lay_strata(
     if let (Some((i, span)), Some(before)) = (rest, before) {
         if before.is_empty() {
             findings.report(
-                Diagnostic::new(Code::E0421, "the trackform under the stretch has no layers whose depth could be kept")
-                    .label(span, "left of what?")
-                    .help("give the trackform its `layers`, or say every thickness here, such as `1 m`"),
+                Diagnostic::new(Code::E0421, "`rest` needs layers of the trackform under the stretch, which has none")
+                    .label(span, "no depth to fill")
+                    .help("give the trackform its `layers`, or give every thickness here, such as `1 m`"),
             );
             return None;
         }
@@ -98,7 +98,7 @@ pub fn lay_strata(
     Some(layers)
 }
 
-/// The thickness that keeps the depth of the layers before, exact at seats and where profiles run straight.
+/// The thickness that keeps the depth of the replaced layers, exact at seats and along straight profiles.
 fn left_over(
     built: &Built,
     layers: &[Layer],
@@ -117,14 +117,14 @@ fn left_over(
     if let Some(seat) = seats.clone().find(|seat| left(places.seats[*seat].0) < -TOLERANCE) {
         let x = places.seats[seat].0;
         let message = format!(
-            "nothing is left at {}: the other layers are {} mm deep, those under the stretch {} mm",
+            "`rest` has no thickness at {}: the other layers are {} mm deep, the layers under the stretch {} mm",
             places.named(&(seat..seat + 1)),
             mm(depth(layers, x)),
             mm(depth(before, x))
         );
         findings.report(
             Diagnostic::new(Code::E0423, message)
-                .label(span, "what is left of the depth")
+                .label(span, "the rest of the depth")
                 .help(format!("make the other layers thinner, or the last layer of trackform `{}` deeper", built.name)),
         );
         return None;
@@ -141,7 +141,7 @@ pub fn lay_layers(built: &Built, places: &Places, section: usize, findings: &mut
     hold_their_grains(built, &layers, findings).then_some(layers)
 }
 
-/// Whether each layer is thicker than a grain or two.
+/// Whether each layer is thicker than two grains.
 pub fn hold_their_grains(built: &Built, layers: &[Layer], findings: &mut Findings) -> bool {
     let spans: Vec<Span> = built.layers.iter().flatten().map(|stratum| stratum.span).collect();
     layers.iter().zip(spans).fold(true, |sound, (layer, span)| holds_its_grains(layer, span, findings) && sound)

@@ -1,4 +1,4 @@
-//! Where everything on a track lies: its sections and transitions as written, laid out to places.
+//! The layout of a track: the places of its sections and transitions.
 
 use super::asked::Asked;
 use super::sides::sides;
@@ -17,19 +17,19 @@ use std::rc::Rc;
 /// The least distance of sleeper -1 from its boundary, m.
 const CLOSE: f64 = 0.01;
 
-/// A track whose seats have their places, before anything stands on them.
+/// A track whose seats have their places, before its parts are added.
 pub struct Layout {
     pub places: Places,
-    /// Section by section: what is written, what it is made of, and where its length comes from.
+    /// For each section: its record, its parts, and the origin of its length.
     pub forms: Vec<Rc<Record>>,
     pub built: Vec<Built>,
     pub lengths: Vec<Origin>,
     pub stretches: Vec<Rc<Record>>,
-    /// Whether all that it lists is understood.
+    /// Whether all listed stretches are understood.
     pub sound: bool,
 }
 
-/// Places the sections of a track, from a complete record; `None` where places cannot be known.
+/// Places the sections of a track, from a complete record; `None` if places cannot be known.
 pub fn layout(
     record: &Record,
     asked: Asked,
@@ -38,7 +38,7 @@ pub fn layout(
     findings: &mut Findings,
 ) -> Option<Layout> {
     let Val::Pairs(pairs) = &record.get("sections")?.value else { return None };
-    // how many there are is not known where one could not be read
+    // the number of sections is not known if one could not be read
     let known = |slot: &Slot| !matches!(slot.value, Val::Error);
     let read = pairs.iter().all(|(key, length)| known(key) && known(length));
     let (stretches, sound) = listed(record);
@@ -84,7 +84,7 @@ fn listed(track: &Record) -> (Vec<Rc<Record>>, bool) {
     (found, sound)
 }
 
-/// Places the seats beside a boundary where its transition states them.
+/// Places the seats beside a boundary if its transition states them.
 fn first_seats(record: &Record, plans: &mut [Plan], sides: &[(String, Side)], findings: &mut Findings) -> Option<()> {
     let Some(Val::Pairs(pairs)) = record.get("transitions").map(|slot| &slot.value) else { return Some(()) };
     let mut sound = true;
@@ -93,7 +93,11 @@ fn first_seats(record: &Record, plans: &mut [Plan], sides: &[(String, Side)], fi
         let Some(slot) = arguments.get("seats") else { continue };
         let Val::Range(before, behind) = slot.value else { return None };
         if before.value > -CLOSE || behind.value < 0.0 {
-            let text = format!("`seats` goes from {} m to {} m", number(before.value), number(behind.value));
+            let text = format!(
+                "`seats` must go from a negative place to 0 m or more, found {} m to {} m",
+                number(before.value),
+                number(behind.value)
+            );
             findings.report(
                 Diagnostic::new(Code::E0514, text)
                     .label(slot.span, "from sleeper -1, before the boundary, to seat +1, on or behind it")

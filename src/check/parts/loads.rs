@@ -1,4 +1,4 @@
-//! Test loads: where they act, and with which force.
+//! Test loads: their places and forces.
 
 use super::force::force_history;
 use super::given::given;
@@ -41,7 +41,7 @@ pub fn loads(
     chainages.into_iter().map(|(x, _)| load(x)).collect()
 }
 
-/// Where a load is more than a constant force at one place.
+/// The place in the text that makes a load more than a constant force at one place.
 fn changes(record: &Record) -> Option<Span> {
     let cyclic = record.get("force").filter(|force| matches!(force.value, Val::Word { .. }));
     let moves = record.get("speed").filter(|speed| matches!(speed.value, Val::Number(n) if n.value > 0.0));
@@ -58,7 +58,7 @@ fn acting_force(record: &Record, on: Target, files: &mut Files<'_>, findings: &m
             let forces = force_history(arguments, force.span, files, findings);
             let Some(Val::Text(of)) = arguments.get("per").map(|slot| &slot.value) else {
                 if arguments.get("per").is_none() && forces.is_some() {
-                    let message = "the forces of a file are `per` what?";
+                    let message = "the forces of a file need a basis";
                     let help = "write `per rail` or `per track`, or on sleepers `per seat` or `per sleeper`, behind it";
                     findings.report(Diagnostic::new(Code::E0304, message).label(force.span, "").help(help));
                 }
@@ -81,7 +81,7 @@ fn acting_force(record: &Record, on: Target, files: &mut Files<'_>, findings: &m
         return None;
     }
     match history {
-        // half of what acts on the track or on a whole sleeper is over one rail
+        // half of a load on the track or on a whole sleeper acts over one rail
         Some(history) => {
             let share = if ["track", "sleeper"].contains(&of) { 0.5 } else { 1.0 };
             Some(Force::History(history.into_iter().map(|[time, force]| [time, share * force]).collect()))
@@ -104,7 +104,7 @@ fn acting(record: &Record) -> Option<Force> {
     Some(Force::Cyclic { range: [of_rail(*least), of_rail(*most)], frequency, wave: Wave::Sine })
 }
 
-/// The most cycles of any load that comes back.
+/// The largest number of cycles of all cyclic loads.
 pub fn cycles(loads: &[Record]) -> Option<u64> {
     let cyclic = loads.iter().filter(|load| matches!(load.get("force").map(|f| &f.value), Some(Val::Word { .. })));
     cyclic.filter_map(|load| load.number("total").map(|n| n.value as u64)).max()

@@ -12,9 +12,9 @@ use crate::scenario::{Bond, Contact, Given, Granular, Packing, Shape, Strength};
 use crate::solvers::granular::packing::Restored;
 use crate::units::number;
 
-/// A material before its layer is laid along the track.
+/// A material before the layout of its layer along the track.
 pub enum Ground {
-    /// With its modulus as a continuum, where that is given.
+    /// With its modulus as a continuum, if it is given.
     Granular(Box<Granular>, Option<Along>),
     Soil {
         youngs_modulus: Along,
@@ -25,7 +25,7 @@ pub enum Ground {
     },
 }
 
-/// The material of a layer; `None` where a diagnostic has been given.
+/// The material of a layer; `None` if a diagnostic has been given.
 pub fn ground(record: &Record, files: &mut Files<'_>, findings: &mut Findings) -> Option<Ground> {
     if record.kind.name == "soil" {
         soil(record, findings)
@@ -149,7 +149,7 @@ fn soil(record: &Record, findings: &mut Findings) -> Option<Ground> {
             Along::Fixed(agree(record, "Young's modulus", &ways, "MPa", findings)?)
         }
     };
-    // moduli that differ make both differ, which is said once
+    // contradicting moduli contradict in both values, but are reported once
     let differ = fixed.zip(of_young).is_some_and(|(own, other)| (*own - *other).abs() > 0.02 * *own);
     let own = given(record, "poisson_ratio");
     let ways = [("poisson_ratio", own), ("(3 K - 2 G) / (6 K + 2 G)", of_poisson.filter(|_| !differ))];
@@ -158,8 +158,8 @@ fn soil(record: &Record, findings: &mut Findings) -> Option<Ground> {
     Some(Ground::Soil { youngs_modulus, poisson_ratio, density, spread, strength: strength? })
 }
 
-/// Young's modulus 9 K G / (3 K + G) and Poisson's ratio (3 K - 2 G) / (6 K + 2 G) of bulk modulus K and shear modulus G;
-/// `Some(None)` where these are not given.
+/// Young's modulus 9 K G / (3 K + G) and Poisson's ratio (3 K - 2 G) / (6 K + 2 G) of bulk modulus K and shear modulus
+/// G; `Some(None)` if these are not given.
 fn moduli(record: &Record, findings: &mut Findings) -> Option<Option<(Given, Given)>> {
     let (Some(bulk), Some(shear)) = (given(record, "bulk_modulus"), given(record, "shear_modulus")) else {
         return Some(None);
@@ -169,7 +169,7 @@ fn moduli(record: &Record, findings: &mut Findings) -> Option<Option<(Given, Giv
     if !(0.0..=0.49).contains(&poisson) {
         let span = |field: &str| record.get(field).map_or(record.span, |slot| slot.span);
         let message = format!(
-            "the moduli of soil `{}` make a Poisson's ratio of {}, which is not within 0 .. 0.49",
+            "the moduli of soil `{}` give a Poisson's ratio of {}, which is outside 0 .. 0.49",
             record.name,
             number((poisson * 1e3).round() / 1e3)
         );
@@ -196,10 +196,10 @@ fn strength(record: &Record, findings: &mut Findings) -> Option<Strength> {
         let span = |name: &str| arguments.get(name).map_or(record.span, |slot| slot.span);
         let shown = |angle: Given| number((angle.to_degrees() * 1e6).round() / 1e6);
         findings.report(
-            Diagnostic::new(Code::E0407, format!("soil `{}` dilates more than it rubs", record.name))
+            Diagnostic::new(Code::E0407, format!("the dilation of soil `{}` exceeds its friction angle", record.name))
                 .label(span("dilation"), format!("dilation of {} deg", shown(dilation)))
                 .label(span("friction_angle"), format!("friction angle of {} deg", shown(friction_angle)))
-                .help("a soil would gain energy; dilation is mostly a third of the friction angle or less"),
+                .help("such a soil would gain energy; dilation is usually a third of the friction angle or less"),
         );
         return None;
     }

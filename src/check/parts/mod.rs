@@ -1,5 +1,5 @@
-//! The parts of the scenario, each from complete records. Whatever is wrong goes to the findings; records and places stay as they
-//! are.
+//! The parts of the scenario, each from complete records. Mistakes go to the findings; records and places are not
+//! changed.
 
 pub mod asked;
 mod bed;

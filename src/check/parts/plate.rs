@@ -1,4 +1,4 @@
-//! Approach slabs: what a stretch says of one, and whether it meets the structure that it is hinged to.
+//! Approach slabs of stretches, and checks that a hinged slab ends at its structure.
 
 use super::given::given;
 use crate::check::evaluate::value::{Record, Val};
@@ -8,7 +8,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::scenario::ApproachSlab;
 use crate::units::number;
 
-/// The approach slab of a stretch that covers some seats; the outer `None` where it is not understood.
+/// The approach slab of a stretch that covers some seats; the outer `None` if it is not understood.
 pub fn approach_slab(
     stretch: &Record,
     transition: usize,

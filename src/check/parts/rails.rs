@@ -9,7 +9,7 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{AuxiliaryRails, Beam, Given, Pad, Rail};
 use crate::units::number;
 
-/// Steel, where a rail says neither its density nor its modulus: kg/m^3 and N/m^2.
+/// Steel, for a rail without density and modulus: kg/m^3 and N/m^2.
 const STEEL_DENSITY: f64 = 7850.0;
 const STEEL_MODULUS: f64 = 210e9;
 
@@ -37,7 +37,7 @@ pub fn rail(record: &Record, findings: &mut Findings) -> Option<Rail> {
         findings,
     );
     let (mass, bending_stiffness) = (mass?, stiffness?);
-    // rho I, with I from EI where the rail does not say it
+    // rho I, with I from EI if the rail does not give I
     let rotary_inertia = product("density", "second_moment")
         .map_or(*bending_stiffness * STEEL_DENSITY / STEEL_MODULUS, |inertia| *inertia);
     Some(Rail {
@@ -49,7 +49,7 @@ pub fn rail(record: &Record, findings: &mut Findings) -> Option<Rail> {
     })
 }
 
-/// `Some(None)` where there are none.
+/// `Some(None)` if there are none.
 pub fn auxiliary_rails(form: &Record, findings: &mut Findings) -> Option<Option<AuxiliaryRails>> {
     let Some(record) = form.record("auxiliary_rails").cloned() else {
         return (!form.unknown("auxiliary_rails")).then_some(None);
@@ -67,7 +67,7 @@ pub fn auxiliary_rails(form: &Record, findings: &mut Findings) -> Option<Option<
     });
     if let Some(span) = varies {
         findings.report(
-            Diagnostic::new(Code::E0406, "the pads of auxiliary rails are the same all along them")
+            Diagnostic::new(Code::E0406, "the pads of auxiliary rails cannot vary along the track")
                 .label(span, "a profile"),
         );
         return None;
@@ -114,10 +114,8 @@ fn without_shear(rail: &Record, asked: Option<Span>, findings: &mut Findings) {
     let mass = given(rail, "mass").or_else(|| Some(Given::derived(*given(rail, "density")? * *given(rail, "area")?)));
     let area = given(rail, "area").map(|area| *area).or(mass.map(|mass| *mass / STEEL_DENSITY));
     let typical = area.map_or(240.0, |area| (0.4 * 80.8e9 * area / 1e6).round());
-    findings.report(
-        mistake.help(format!(
-            "add `shear_stiffness = {} MN`, which is 0.4 G A, or say what its maker says",
-            number(typical)
-        )),
-    );
+    findings.report(mistake.help(format!(
+        "add `shear_stiffness = {} MN`, which is 0.4 G A, or the value of the manufacturer",
+        number(typical)
+    )));
 }

@@ -1,4 +1,4 @@
-//! What is kept of a run: quantities, seats, counts, volumes.
+//! Records of a run: quantities, seats, counts, volumes.
 
 use super::asked::Asked;
 use super::given::given;
@@ -12,7 +12,7 @@ use crate::scenario::response::{Place, Response};
 use crate::scenario::{Record as Kept, Volume, VolumeRecord};
 use crate::units::Dimension;
 
-/// What a record keeps of the track, and what of volumes under it.
+/// The recorded quantities of the track, and of volumes under it.
 pub fn kept(
     record: &Record,
     places: Option<&Places>,
@@ -54,10 +54,11 @@ pub fn kept(
     Some((kept, volumes))
 }
 
-/// States are those of rail and sleepers under trains; the bed of a rig is written by another command.
+/// Refuses states of a rig: states record rail and sleepers under trains; another command writes the bed of a rig.
 fn states_of_a_rig(span: Span, findings: &mut Findings) {
     let message = "states of a test rig over its cycles are not in this version";
-    let help = "leave `states` out: `cycles.csv`, `loops.csv` and `sensors.csv` have every recorded cycle, and `trackbed pack` writes the grains of the bed before its test";
+    let help = "leave `states` out: `cycles.csv`, `loops.csv` and `sensors.csv` hold every recorded cycle, and \
+                `trackbed pack` writes the grains of the bed before its test";
     findings.report(Diagnostic::new(Code::E0619, message).label(span, "no series of states").help(help));
 }
 
@@ -73,7 +74,7 @@ fn counts(
         Some(_) => return None,
         None => return Some(counted.map(|counted| counted.axles).or(cycles).into_iter().collect()),
     };
-    // of another unit are all or none: it stands behind the list
+    // all counts have the same unit, because it is written behind the list
     let cycles_of_axles = |slot: &Slot| matches!(slot.value, Val::Number(n) if n.dimension == Dimension::CYCLES);
     if let Some(first) = slots.iter().find(|slot| counted.is_some() && cycles_of_axles(slot)) {
         not_counted(Dimension::CYCLES, "axles of its trains", first.span, findings);
@@ -89,14 +90,14 @@ fn counts(
     let counts: Vec<Option<u64>> = match (counted, cycles) {
         (Some(_), _) => slots.iter().map(|slot| between_trains(slot, counted, findings)).collect(),
         (None, Some(cycles)) => slots.iter().map(|slot| recorded_cycles(slot, cycles, findings)).collect(),
-        // what counts is not understood, or nothing does
+        // the traffic is not understood, or there is none
         (None, None) => Vec::new(),
     };
     beyond_one_end(&mut findings.diagnostics, before);
     counts.into_iter().collect()
 }
 
-/// Counts of a list that all lie beyond the end of the run are one mistake.
+/// Counts of a list that all lie beyond the end of the run are reported once.
 fn beyond_one_end(diagnostics: &mut Vec<Diagnostic>, before: usize) {
     for mistake in diagnostics.split_off(before.min(diagnostics.len())) {
         let same = |d: &&mut Diagnostic| d.code == Code::E0602 && d.help.is_none() && d.message == mistake.message;
@@ -142,12 +143,12 @@ pub fn volume(record: &Record) -> Option<Volume> {
     })
 }
 
-/// Notes what a run without grains does not answer.
+/// Notes a quantity that a run without grains does not record.
 fn without_grains(quantity: Response, span: Span, findings: &mut Findings) {
-    let message = format!("`{}` is a response of grains, and this scene runs without them", quantity.name());
+    let message = format!("`{}` is a response of grains, but this scene runs without grains", quantity.name());
     findings.report(
         Diagnostic::new(Code::E0422, message)
             .label(span, "not recorded")
-            .help("it is kept for runs with `substructure = cells`, `zone` or `full`"),
+            .help("it is recorded in runs with `substructure = cells`, `zone` or `full`"),
     );
 }

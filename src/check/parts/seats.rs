@@ -1,4 +1,4 @@
-//! The seats of a section: where a field varies along the track, each seat takes the value of its place.
+//! The seats of a section: if a field varies along the track, each seat takes the value at its place.
 
 use super::ground::{Carrying, Under, stacks};
 use super::spring::{LaidSpring, lay_spring, pad_at, spring_at};
@@ -21,14 +21,14 @@ enum LaidFoot<'a> {
     Fixed(Foot),
 }
 
-/// What carries sleepers.
+/// The support of sleepers.
 enum LaidSupport<'a> {
     Stated(LaidSpring<'a>),
-    /// Found from the layers of each seat when the scene is planned.
+    /// Computed from the layers of each seat when the scene is planned.
     OfLayers,
 }
 
-/// Some seats of a section, each with the values of its place. Whatever varies is laid out, even beside parts that are not
+/// Some seats of a section, each with the values at its place. Varying fields are laid out even if other parts are not
 /// understood.
 pub fn lay_seats(
     built: &Built,
@@ -130,7 +130,7 @@ pub fn usual_damping_time(eval: &mut Evaluator<'_>) -> Option<Given> {
     }
 }
 
-/// A support grows stiffer as it closes up, never softer.
+/// Checks that the seating stiffness is not above the stiffness under load.
 fn seats_softly(
     built: &Built,
     seating: Seating,
@@ -143,14 +143,14 @@ fn seats_softly(
         return true;
     };
     let shown = |given: Given| format!("{} MN/m per seat", number(*given / 1e6));
-    let message = format!("the support of trackform `{}` seats itself more stiffly than it carries", built.name);
+    let message = format!("the support of trackform `{}` is stiffer during seating than under load", built.name);
     let mut mistake = Diagnostic::new(Code::E0407, message);
-    for (given, what) in [(seating.stiffness, "while it seats itself"), (stiffness, "under load")] {
+    for (given, what) in [(seating.stiffness, "during seating"), (stiffness, "under load")] {
         if let Some(span) = given.origin.span() {
             mistake = mistake.label(span, format!("{} {what}", shown(given)));
         }
     }
-    findings.report(mistake.help("ballast closes up under load: give `seating` the smaller stiffness"));
+    findings.report(mistake.help("ballast becomes stiffer under load: give `seating` the smaller stiffness"));
     false
 }
 

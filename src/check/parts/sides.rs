@@ -1,4 +1,4 @@
-//! Which side of each boundary is the softer one: as declared, and, where that is missing, as computed for an offer.
+//! The softer side of each boundary: as declared, or as computed for a help if it is not declared.
 
 use super::asked::Asked;
 use super::ground::{Carrying, Under};
@@ -12,8 +12,8 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Foot, Given, Side, point_stiffness, seat_stiffness};
 use crate::solvers::foundation::{self, Below, Method};
 
-/// Name and side of every boundary of so many sections; `None` where they are not declared and cannot be left out. The sections that
-/// are understood are for the offer.
+/// Name and side of every boundary between sections; `None` if they are required but not declared. The sections that
+/// are understood are used for the help.
 pub fn sides(
     record: &Record,
     sections: usize,
@@ -28,7 +28,8 @@ pub fn sides(
             return Some(vec![(String::new(), Side::SoftToStiff); boundaries]);
         }
         if !record.partial {
-            let message = format!("{sections} sections have {boundaries} transitions: say which side is which");
+            let message =
+                format!("{sections} sections have {boundaries} transitions: declare the side of each transition");
             findings.report(
                 Diagnostic::new(Code::E0504, message).label(record.span, "no `transitions` given").help(offer(
                     &[],
@@ -74,7 +75,7 @@ pub fn sides(
     declared.collect()
 }
 
-/// The line to write, with the sides that the stiffness under the pads gives; names that are there are kept.
+/// The line to write, with sides from the stiffness under the pads; existing names are kept.
 fn offer(names: &[(&str, Span)], boundaries: usize, built: &[Built], plans: &[Plan], asked: Asked) -> String {
     let stiffnesses: Option<Vec<f64>> =
         built.iter().zip(plans).map(|(built, plan)| stiffness(built, plan, asked)).collect();
@@ -101,25 +102,26 @@ fn offer(names: &[(&str, Span)], boundaries: usize, built: &[Built], plans: &[Pl
                     shown.push(of_form);
                 }
             }
-            format!("write `{}`: what lies under the pads has about {}", line(&computed), shown.join(", "))
+            format!("write `{}`: the stiffness under the pads is about {}", line(&computed), shown.join(", "))
         }
         None => format!(
-            "name each and say its side, such as `{}`: `soft_to_stiff` where the track before the boundary is the softer one",
+            "name each and give its side, such as `{}`: `soft_to_stiff` means a softer track before the boundary",
             line(&|b| if b % 2 == 0 { Side::StiffToSoft } else { Side::SoftToStiff })
         ),
     }
 }
 
-/// The stiffness, N/m, of the ground or of the structure under one seat of a trackform. The seat lies in its middle, without other sections
-/// beside it. Pads are left out, since soft pads lie on structures to hide their stiffness. `None` where the stiffness is not known.
+/// The stiffness, N/m, of the ground or of the structure under one seat of a trackform. The seat lies in its middle,
+/// without other sections beside it. Pads are left out, since soft pads lie on structures to hide their stiffness.
+/// `None` if the stiffness is not known.
 fn stiffness(built: &Built, plan: &Plan, asked: Asked) -> Option<f64> {
-    // what is wrong with the form is said where it is built
+    // mistakes of the trackform are reported when it is built
     let mut aside = Findings::default();
     let alone = Plan { name: plan.name.clone(), bays: Default::default(), first: Default::default(), ..*plan };
     let places = lay_out(&[alone], &[], 1, &mut aside)?;
     let layers = lay_layers(built, &places, 0, &mut aside)?;
     let middle = places.seats.len() / 2;
-    // the time gives dampers alone
+    // the time affects only dampers
     let carrying = Carrying { asked, damping_time: Some(Given::derived(0.0)) };
     let under = Under::Section(Some(&layers));
     let seats = lay_seats(built, &places, 0, middle..middle + 1, under, carrying, &mut aside)?;

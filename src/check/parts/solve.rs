@@ -1,4 +1,4 @@
-//! How the answer is computed: the words of `solve`.
+//! The settings of the computation: the words of `solve`.
 
 use super::asked::tier;
 use super::given::given;
@@ -12,7 +12,7 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Beam, Given, Grains, Integrator, Solve, TimeStep, Update};
 use crate::solvers::foundation::Method;
 
-/// How the answer is computed, from a complete `solve`.
+/// The settings of the computation, from a complete `solve`.
 pub fn solve(record: &Record, places: Option<&Places>, findings: &mut Findings) -> Option<Solve> {
     let laws = record.get("law").and_then(|slot| laws(slot, findings));
     let update = record.get("update_every")?;
@@ -88,9 +88,9 @@ fn adaptive(tolerance: Option<(f64, Span)>, cap: Option<(f64, Span)>, findings: 
     let (tolerance, of_error) = tolerance?;
     if let Some((_, of_block)) = cap.filter(|(cap, _)| *cap < tolerance) {
         findings.report(
-            Diagnostic::new(Code::E0407, "a block may settle less than it may err")
-                .label(of_error, "error of a block")
-                .label(of_block, "settlement of a block")
+            Diagnostic::new(Code::E0407, "the settlement limit of a block is below its error limit")
+                .label(of_error, "error limit of a block")
+                .label(of_block, "settlement limit of a block")
                 .help("make `cap` larger than `tolerance`, or leave it out"),
         );
         return None;
@@ -98,7 +98,7 @@ fn adaptive(tolerance: Option<(f64, Span)>, cap: Option<(f64, Span)>, findings: 
     Some(Update::Adaptive { tolerance, cap: cap.map(|(cap, _)| cap) })
 }
 
-/// How grains are computed, from a complete `solve`.
+/// The settings for grains, from a complete `solve`.
 pub fn grains(record: &Record, places: Option<&Places>, findings: &mut Findings) -> Option<Grains> {
     let window = window(record.get("window")?, places, findings);
     let optional = |field: &str| match record.get(field).map(|slot| &slot.value) {
@@ -124,7 +124,7 @@ pub fn grains(record: &Record, places: Option<&Places>, findings: &mut Findings)
     })
 }
 
-/// A span at every transition; on a track without one, from its left end.
+/// A span at every transition; on a track without a transition, from its left end.
 fn window(slot: &Slot, places: Option<&Places>, findings: &mut Findings) -> Option<Option<Vec<[f64; 2]>>> {
     let (a, b) = match &slot.value {
         Val::Range(a, b) => (*a, *b),

@@ -25,7 +25,7 @@ pub struct LaidSpring<'a> {
     time: Option<Given>,
 }
 
-/// A spring as a record says it; `None` where it is not understood.
+/// A spring from its record; `None` if it is not understood.
 pub fn damped(record: &Rc<Record>) -> Option<Damped> {
     let stiffness = along(record, "stiffness")?;
     let (damping, time) = (along(record, "damping"), given(record, "damping_time"));
@@ -35,7 +35,7 @@ pub fn damped(record: &Rc<Record>) -> Option<Damped> {
     Some(Damped { record: record.clone(), stiffness, damping, time })
 }
 
-/// Lays a spring along the track; `None` where a diagnostic has been given.
+/// Lays a spring along the track; `None` if a diagnostic has been given.
 pub(super) fn lay_spring<'a>(
     spring: &'a Damped,
     places: &Places,
@@ -68,7 +68,7 @@ pub fn spring_at(spring: &LaidSpring<'_>, x: f64, findings: &mut Findings) -> Op
 }
 
 impl Damped {
-    /// Without a place; `None` where it varies.
+    /// The value without a place; `None` if it varies.
     pub(super) fn laid_anywhere(&self) -> Option<LaidSpring<'_>> {
         let fixed = |along: &Along| match along {
             Along::Fixed(given) => Some(Laid::Fixed(*given)),

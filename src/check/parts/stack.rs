@@ -1,23 +1,23 @@
-//! What lies under one seat: its layers at its place, and how its sleeper lies on them.
+//! The ground under one seat: the layers at its place, and the sleeper on them.
 
 use crate::diag::Span;
 use crate::scenario::{self, ApproachSlab, Given, Material, SleeperBody, Stack};
 use crate::solvers::foundation::Layer;
 
-/// The ground of some seats, of which each takes what lies at its place.
+/// The ground of some seats; each seat takes the layers at its place.
 pub struct Ground<'a> {
     pub body: SleeperBody,
     pub layers: &'a [scenario::Layer],
     pub plate: Option<ApproachSlab>,
-    /// The layers with which a stated support goes, where a stretch has replaced them.
+    /// The layers that belong to a stated support, if a stretch has replaced them.
     pub before: Option<&'a [scenario::Layer]>,
     pub damping_time: Given,
-    /// Where the layers are given.
+    /// The place of the layers in the text.
     pub span: Span,
 }
 
 impl Ground<'_> {
-    /// What lies under a sleeper at a chainage, m, its neighbours so far away on the left and on the right, m; `None` where a
+    /// The ground under a sleeper at a chainage, m, with the distances to its left and right neighbours, m; `None` if a
     /// modulus is not known.
     pub fn at_seat(&self, x: f64, spacings: [f64; 2]) -> Option<Stack> {
         Some(Stack {
@@ -31,7 +31,7 @@ impl Ground<'_> {
     }
 }
 
-/// Layers at a chainage as continua; `None` where a modulus is not known.
+/// Layers at a chainage as continua; `None` if a modulus is not known.
 fn continua(layers: &[scenario::Layer], x: f64) -> Option<Vec<Layer>> {
     let continuum = |layer: &scenario::Layer| {
         let (poisson_ratio, density, spread) = match &layer.material {

@@ -13,16 +13,16 @@ pub struct Stratum {
     pub name: String,
     pub ground: Ground,
     pub thickness: Thickness,
-    /// Where the thickness stands.
+    /// The place of the thickness in the text.
     pub span: Span,
-    /// Where the material stands, and where the layer names it.
+    /// The place of the material, and the place at which the layer names it.
     material: [Span; 2],
 }
 
-/// How thick a layer is said to be.
+/// The given thickness of a layer.
 pub enum Thickness {
     Given(Along),
-    /// What is left of the depth of the layers that the stretch changes.
+    /// The rest of the depth of the layers that the stretch changes.
     Rest,
 }
 
@@ -32,13 +32,13 @@ impl Stratum {
         matches!(self.ground, Ground::Granular(_, None))
     }
 
-    /// Name and place of its material, and where the layer names it.
+    /// Name and place of its material, and the place at which the layer names it.
     pub fn places(&self) -> (&str, Span, Span) {
         (&self.name, self.material[0], self.material[1])
     }
 }
 
-/// The layers of a trackform, downwards; `None` where one is not understood. Those of a stretch may say `rest`.
+/// The layers of a trackform, downwards; `None` if one is not understood. Layers of a stretch may have `rest`.
 pub fn strata(form: &Record, of_stretch: bool, files: &mut Files<'_>, findings: &mut Findings) -> Option<Vec<Stratum>> {
     let Some(slot) = form.get("layers") else { return Some(Vec::new()) };
     let Val::Pairs(pairs) = &slot.value else { return None };
@@ -48,10 +48,10 @@ pub fn strata(form: &Record, of_stretch: bool, files: &mut Files<'_>, findings: 
     let mut rests = strata.iter().filter(|stratum| matches!(stratum.thickness, Thickness::Rest));
     if let (Some(first), Some(second)) = (rests.next(), rests.next()) {
         findings.report(
-            Diagnostic::new(Code::E0423, "two layers cannot both take what is left of the depth")
+            Diagnostic::new(Code::E0423, "two layers cannot both have the thickness `rest`")
                 .label(second.span, "again here")
                 .label(first.span, "first here")
-                .help("say the thickness of all layers but one"),
+                .help("give the thickness of all layers but one"),
         );
         return None;
     }
@@ -73,10 +73,11 @@ fn stratum(
         Val::Word { .. } if of_stretch => Thickness::Rest,
         Val::Word { .. } => {
             findings.report(
-                Diagnostic::new(Code::E0421, "only the layers of a stretch can take what is left")
-                    .label(thickness.span, "left of what?")
+                Diagnostic::new(Code::E0421, "only the layers of a stretch can have the thickness `rest`")
+                    .label(thickness.span, "no depth to fill")
                     .help(
-                        "a stretch keeps the depth of the trackform under it; a trackform itself says every thickness, such as `1 m`",
+                        "a stretch keeps the depth of the trackform under it; a trackform itself gives every \
+                         thickness, such as `1 m`",
                     ),
             );
             return None;

@@ -1,5 +1,5 @@
-//! Stretches: what differs over a span of the track. Each extends the trackform under it with the fields that it sets; where
-//! two overlap they must set different things, so that their order means nothing.
+//! Stretches: changes over a span of the track. Each extends the trackform under it with the fields that it sets. Two
+//! overlapping stretches must set different fields, so that their order has no effect.
 
 use super::plate::approach_slab;
 use crate::check::evaluate::evaluator::Evaluator;
@@ -15,16 +15,16 @@ use crate::units::{Dimension, number};
 use std::ops::Range;
 use std::rc::Rc;
 
-/// Parts that make a section what it is from end to end.
+/// Parts that are the same along a whole section.
 const WHOLE_SECTION: [&str; 4] = ["rail", "slab", "crib", "shoulder"];
 /// A stretch at one of its transitions.
 pub struct Instance {
     pub stretch: Rc<Record>,
-    /// From which its places count.
+    /// The transition from which its places count.
     pub transition: usize,
     /// Chainage of its first and of its last end, m.
     ends: [f64; 2],
-    /// What it covers, m, ascending: a span of sleepers reaches half a bay beyond them.
+    /// The covered span, m, ascending: a span of sleepers reaches half a bay beyond them.
     pub reach: (f64, f64),
     pub seats: Range<usize>,
     pub plate: Option<ApproachSlab>,
@@ -36,12 +36,12 @@ impl Instance {
         self.stretch.changes.iter().any(|c| c.field.path.names[0].text == field)
     }
 
-    /// Whether it changes what lies under the sleepers.
+    /// Whether it changes the ground under the sleepers.
     pub(super) fn regrades(&self) -> bool {
         self.sets("layers") || self.plate.is_some()
     }
 
-    /// Where its span stands, or itself.
+    /// The place of its span in the text, or of the stretch.
     pub fn over(&self) -> Span {
         self.stretch.get("over").map_or(self.stretch.span, |slot| slot.span)
     }
@@ -53,7 +53,7 @@ impl Instance {
     }
 }
 
-/// Puts stretches on the track. All mistakes are said; `None` where there was one.
+/// Puts stretches on the track. All mistakes are reported; `None` if there was one.
 pub fn stand(stretches: &[Rc<Record>], places: &Places, findings: &mut Findings) -> Option<Vec<Instance>> {
     let stood: Vec<Option<Vec<Instance>>> =
         stretches.iter().map(|stretch| stand_one(stretch, places, findings)).collect();
@@ -106,15 +106,15 @@ fn stand_one(stretch: &Rc<Record>, places: &Places, findings: &mut Findings) -> 
     Some(stood).filter(|_| sound)
 }
 
-/// Whether a stretch changes anything, and nothing that a section is from end to end.
+/// Whether a stretch changes at least one part, and no part that is the same along a whole section.
 fn says_something(stretch: &Record, findings: &mut Findings) -> bool {
     let nothing = stretch.changes.is_empty()
         && !matches!(stretch.get("approach_slab"), Some(s) if !matches!(s.value, Val::Word { .. }));
     if nothing && !stretch.partial {
         findings.report(
             Diagnostic::new(Code::E0417, format!("stretch `{}` changes nothing", stretch.name))
-                .label(stretch.span, "says where, not what")
-                .help("say what differs there, such as `usp = usps.medium` or `pad.stiffness = 60 MN/m`"),
+                .label(stretch.span, "gives a place but no change")
+                .help("give the changes, such as `usp = usps.medium` or `pad.stiffness = 60 MN/m`"),
         );
     }
     let mut sound = !stretch.partial && !nothing;
@@ -135,7 +135,7 @@ fn says_something(stretch: &Record, findings: &mut Findings) -> bool {
     sound
 }
 
-/// Refuses stretches that set the same thing at the same sleepers.
+/// Refuses stretches that set the same field at the same sleepers.
 fn do_not_clash(stood: &[Instance], places: &Places, findings: &mut Findings) -> bool {
     let mut sound = true;
     for (i, later) in stood.iter().enumerate() {
@@ -154,7 +154,7 @@ fn do_not_clash(stood: &[Instance], places: &Places, findings: &mut Findings) ->
     sound
 }
 
-/// A trackform as stretches change it, without the defaults of what they bring.
+/// A trackform as stretches change it, without defaults of the changes.
 pub fn extended_by(form: &Record, stretches: &[&Instance], eval: &mut Evaluator<'_>) -> Record {
     let mut extended = form.clone();
     for instance in stretches {
@@ -168,7 +168,7 @@ pub fn extended_by(form: &Record, stretches: &[&Instance], eval: &mut Evaluator<
     extended
 }
 
-/// Stretches as the scene keeps them, for drawing.
+/// Stretches of the scene, for drawing.
 pub fn described(stood: &[Instance]) -> Vec<Stretch> {
     let what = |instance: &Instance| {
         let mut paths: Vec<String> = instance.stretch.changes.iter().map(|c| c.field.path.text()).collect();
@@ -188,7 +188,7 @@ fn overlap(a: &Change, b: &Change) -> bool {
     a.field.path.names.iter().zip(&b.field.path.names).all(|(a, b)| a.text == b.text)
 }
 
-/// Whether two paths say the same thing in different ways, as `pad.damping` and `pad.damping_time` do.
+/// Whether two paths give the same quantity in different ways, like `pad.damping` and `pad.damping_time`.
 fn rivals(a: &Change, b: &Change) -> bool {
     fn within(kind: &'static Kind, a: &[Name], b: &[Name]) -> bool {
         let ([a, inside_a @ ..], [b, inside_b @ ..]) = (a, b) else { return false };
@@ -207,7 +207,7 @@ fn rivals(a: &Change, b: &Change) -> bool {
 fn clash(first: &Instance, a: &Change, later: &Instance, b: &Change, seats: &str) -> Diagnostic {
     let (one, two) = (&first.stretch.name, &later.stretch.name);
     if first.stretch.span == later.stretch.span {
-        let mistake = Diagnostic::new(Code::E0512, format!("stretch `{one}` meets itself at {seats}"));
+        let mistake = Diagnostic::new(Code::E0512, format!("stretch `{one}` overlaps itself at {seats}"));
         return mistake.label(first.over(), "reaches too far").help("shorten its span, or list it once");
     }
     let (path, other) = (a.field.path.text(), b.field.path.text());
@@ -218,10 +218,10 @@ fn clash(first: &Instance, a: &Change, later: &Instance, b: &Change, seats: &str
     Diagnostic::new(Code::E0512, message)
         .label(b.field.path.span, format!("set by `{two}`"))
         .label(a.field.path.span, format!("set by `{one}`"))
-        .help("let one span end where the other begins, or set it in one of them")
+        .help("let one span end at the beginning of the other, or set it in only one stretch")
 }
 
-/// What stands at a path of an object.
+/// The value at a path of an object.
 fn slot_at<'a>(record: &'a mut Record, path: &[Name]) -> Option<&'a mut Slot> {
     let (name, rest) = path.split_first()?;
     let slot = record.fields.get_mut(name.text.as_str())?;
@@ -254,8 +254,8 @@ fn settle(slot: &mut Slot, ground: &Instance) {
 
 /// Two stretches that put a plate under the same seats.
 fn two_plates(first: &Instance, later: &Instance, seats: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0512, format!("two approach slabs lie in one place at {seats}"))
-        .label(later.over(), format!("that of `{}`", later.stretch.name))
-        .label(first.over(), format!("that of `{}`", first.stretch.name))
-        .help("let one span end where the other begins")
+    Diagnostic::new(Code::E0512, format!("two approach slabs overlap at {seats}"))
+        .label(later.over(), format!("the slab of `{}`", later.stretch.name))
+        .label(first.over(), format!("the slab of `{}`", first.stretch.name))
+        .help("let one span end at the beginning of the other")
 }

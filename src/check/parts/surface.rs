@@ -19,7 +19,7 @@ const LIBRARY: &[(&str, &[u8])] = &[
     ("worn", include_bytes!("../../../stdlib/shapes/worn.stl")),
 ];
 
-/// What says the form of angular shapes, and nothing where surfaces are given.
+/// Arguments for the form of angular shapes; they have no effect if surfaces are given.
 const OF_ANGULAR: [&str; 4] = ["templates", "flatness", "elongation", "roundness"];
 
 /// The surfaces that clumps fill.
@@ -40,7 +40,7 @@ pub fn grain_surfaces(
     let sound = one_form(word, arguments, from, findings);
     let Val::List(slots) = &from.value else { return None };
     if slots.is_empty() {
-        let mistake = Diagnostic::new(Code::E0406, "expected one surface at least, found an empty list");
+        let mistake = Diagnostic::new(Code::E0406, "expected at least one surface, found an empty list");
         findings.report(mistake.label(from.span, "no surface").help("leave `from` out for angular shapes"));
         return None;
     }
@@ -49,7 +49,7 @@ pub fn grain_surfaces(
     surfaces.into_iter().collect::<Option<_>>().map(Surfaces::Meshes)
 }
 
-/// Refuses indices of angular shapes beside surfaces. Defaults that are written out say nothing.
+/// Refuses indices of angular shapes beside surfaces. Values equal to the defaults are accepted.
 fn one_form(word: &Word, arguments: &Arguments, from: &Slot, findings: &mut Findings) -> Option<()> {
     let mut sound = Some(());
     for name in OF_ANGULAR {
@@ -58,10 +58,10 @@ fn one_form(word: &Word, arguments: &Arguments, from: &Slot, findings: &mut Find
             continue;
         }
         findings.report(
-            Diagnostic::new(Code::E0407, format!("`from` and `{name}` both say which shapes grains have"))
-                .label(slot.span, "of angular shapes")
+            Diagnostic::new(Code::E0407, format!("`from` and `{name}` both give the shapes of grains"))
+                .label(slot.span, "for angular shapes")
                 .label(from.span, "these surfaces have forms of their own")
-                .help(format!("keep one of the two: `{name}` is of the shapes that are made where no `from` stands")),
+                .help(format!("keep one of the two: `{name}` applies to the shapes that are generated without `from`")),
         );
         sound = None;
     }
@@ -79,7 +79,7 @@ fn grain_surface(slot: &Slot, files: &mut Files<'_>, findings: &mut Findings) ->
     Some(Surface { name: name.clone(), mesh })
 }
 
-/// Whether an argument says what its default says.
+/// Whether an argument equals its default.
 fn is_default(word: &Word, name: &str, slot: &Slot) -> bool {
     let field = word.arguments.iter().find(|field| field.name == name);
     let (Some(Need::Default(text)), Val::Number(given)) = (field.map(|f| f.need), &slot.value) else { return false };

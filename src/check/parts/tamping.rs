@@ -1,4 +1,4 @@
-//! Tamping: at which counts, of which sleepers, and how much of their settlement stays.
+//! Tamping: its counts, its sleepers, and the remaining share of their settlement.
 
 use super::asked::Asked;
 use super::traffic::{Counted, between_trains};
@@ -9,7 +9,7 @@ use crate::check::places::chosen::seats_over;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Tamping, Track};
 
-/// Every tamping of a scene. Those that change nothing are said.
+/// Every tamping of a scene. Tampings without effect are reported.
 pub fn tampings(
     records: &[Record],
     places: Option<&Places>,
@@ -22,9 +22,12 @@ pub fn tampings(
     for record in records {
         if !asked.traffic {
             findings.report(
-                Diagnostic::new(Code::E0427, format!("`{}` tamps a track that no train settles", record.name))
-                    .label(record.span, "without an effect")
-                    .help("add `traffic`, or take the tamping out"),
+                Diagnostic::new(
+                    Code::E0427,
+                    format!("`{}` has no effect, because no train settles the track", record.name),
+                )
+                .label(record.span, "no effect")
+                .help("add `traffic`, or take the tamping out"),
             );
             continue;
         }
@@ -55,7 +58,7 @@ fn tamping(
     let seats: Vec<usize> = named.into_iter().filter(|seat| track.seats[*seat].is_ballasted()).collect();
     if seats.is_empty() {
         findings.report(
-            Diagnostic::new(Code::E0427, format!("`{}` reaches no sleeper on ballast", record.name))
+            Diagnostic::new(Code::E0427, format!("`{}` covers no sleeper on ballast", record.name))
                 .label(over, "nothing to tamp here")
                 .help("tamp sleepers on a support that settles: `over = -20 .. -1 sleepers`"),
         );
@@ -65,7 +68,7 @@ fn tamping(
     Some((Tamping { name: record.name.clone(), after, seats, left: left?.value }, spans))
 }
 
-/// The counts after which it comes, between the first and the last train.
+/// The counts after which it is done, between the first and the last train.
 fn tamped_after(record: &Record, counted: Option<&Counted>, findings: &mut Findings) -> Option<Vec<(u64, Span)>> {
     let Val::List(slots) = &record.get("after")?.value else { return None };
     let counts: Vec<Option<(u64, Span)>> =
@@ -80,7 +83,7 @@ fn tamped_after(record: &Record, counted: Option<&Counted>, findings: &mut Findi
             _ => continue,
         };
         findings.report(
-            Diagnostic::new(Code::E0427, format!("`{}` comes when it changes nothing", record.name))
+            Diagnostic::new(Code::E0427, format!("`{}` has no effect at this count", record.name))
                 .label(*span, why)
                 .help("tamp between the first and the last train"),
         );
@@ -89,7 +92,7 @@ fn tamped_after(record: &Record, counted: Option<&Counted>, findings: &mut Findi
     sound.then_some(counts)
 }
 
-/// Whether no sleeper is tamped twice at once; what stays of it would hang on the order.
+/// Whether no sleeper is tamped twice at the same count; the result would depend on the order.
 fn tamped_once(tampings: &[(Tamping, Vec<Span>)], findings: &mut Findings) -> bool {
     let counts = |of: &(Tamping, Vec<Span>)| of.0.after.iter().copied().zip(of.1.clone()).collect::<Vec<_>>();
     let mut sound = true;

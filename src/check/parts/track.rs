@@ -1,4 +1,4 @@
-//! From the objects of a track to the track of the scenario: sections, seats and what each stands on.
+//! From the objects of a track to the track of the scenario: sections, seats and their supports.
 
 use super::asked::Asked;
 use super::bed::bed;
@@ -21,7 +21,7 @@ use crate::scenario::{
     AuxiliaryRailSpan, Curve, Given, Groundwork, Layer, Origin, Piece, Profile, RailEnds, Seat, Section, Track,
 };
 
-/// What the sections of a track are made of, one after the other.
+/// The parts of the sections of a track, in order.
 #[derive(Default)]
 struct Parts {
     sections: Vec<Section>,
@@ -68,7 +68,7 @@ pub fn track(record: &Record, layout: &Layout, asked: Asked, eval: &mut Evaluato
     })
 }
 
-/// Adds a section with its seats, as the stretches over it leave them; whether all was understood.
+/// Adds a section with its seats, changed by the stretches over it; returns whether all was understood.
 fn add_section(
     parts: &mut Parts,
     layout: &Layout,
@@ -102,7 +102,7 @@ fn add_section(
     sound
 }
 
-/// The level of the rail as built; `None` where it is not understood.
+/// The level of the rail as built; `None` if it is not understood.
 fn irregularity(record: &Record, places: &Places, findings: &mut Findings) -> Option<Option<Profile>> {
     let (start, end) = (places.sections.first()?.0, places.sections.last()?.1);
     match along(record, "irregularity")? {
@@ -119,7 +119,7 @@ fn irregularity(record: &Record, places: &Places, findings: &mut Findings) -> Op
     }
 }
 
-/// What a section is made of, as far as it does not vary.
+/// The parts of a section that do not vary.
 fn whole_section(
     built: &Built,
     spacing: Option<Given>,

@@ -1,4 +1,4 @@
-//! What a trackform is made of: its parts as far as they are understood, each checked against the others.
+//! The parts of a trackform, as far as they are understood, each checked against the others.
 
 use super::asked::{Asked, stands_on_layers};
 use super::crib::crib;
@@ -15,37 +15,37 @@ use crate::scenario::{AuxiliaryRails, Crib, Given, Rail, Seating, Slab, SleeperB
 use crate::units::number;
 use std::rc::Rc;
 
-/// A trackform as far as it is understood; the outer `None` of a part is one that is not.
+/// A trackform as far as it is understood; the outer `None` of a part means that the part is not understood.
 pub struct Built {
     pub name: String,
-    /// `Some(None)` where a rig leaves it out.
+    /// `Some(None)` if a rig leaves it out.
     pub rail: Option<Option<Rail>>,
     pub spacing: Option<Given>,
     pub slab: Option<Slab>,
     pub sleeper: Option<Rc<Record>>,
     pub auxiliary_rails: Option<Option<AuxiliaryRails>>,
-    /// `Some(None)` where a rig leaves it out.
+    /// `Some(None)` if a rig leaves it out.
     pub pad: Option<Option<Damped>>,
     pub foot: Option<Base>,
     pub settlement: Option<Along>,
     pub layers: Option<Vec<Stratum>>,
-    /// Where its layers stand, or the trackform itself.
+    /// The place of its layers in the text, or of the trackform.
     pub layers_span: Span,
     pub crib: Option<Crib>,
 }
 
-/// What the pads stand on.
+/// The part under the pads.
 pub enum Base {
     Sleeper(Box<UnderSleeper>),
     Rigid,
     Slab,
 }
 
-/// A sleeper and what lies under it.
+/// A sleeper and the parts under it.
 pub struct UnderSleeper {
     pub mass: Option<Given>,
     pub support: Option<Damped>,
-    /// Whether the layers carry it, and nothing that is stated.
+    /// Whether the layers carry it, without a stated support.
     pub by_layers: bool,
     pub seating: Option<Option<Seating>>,
     pub usp: Option<Option<Cushion>>,
@@ -85,7 +85,7 @@ fn base_area(sleeper: &Record) -> Option<f64> {
     of("base_area").or_else(|| Some(of("length")? * of("base_width")?))
 }
 
-/// The parts of a trackform, or of one that a stretch extends.
+/// The parts of a trackform, or of a trackform that a stretch extends.
 pub fn trackform(
     form: &Record,
     of_stretch: bool,
@@ -99,7 +99,7 @@ pub fn trackform(
     let auxiliary_rails = auxiliary_rails(form, findings);
     let sleeper = form.record("sleeper").cloned();
     let (foot, slab) = under_the_pads(form, sleeper.as_ref(), asked, findings);
-    // where nothing can settle a settlement has been refused: it need not cover the section as well
+    // a settlement without ballast has been refused: it is not checked against the section again
     let settlement = match &foot {
         Some(Base::Slab | Base::Rigid) => Some(Along::Fixed(Given::derived(0.0))),
         _ => along(form, "settlement"),
@@ -162,7 +162,7 @@ fn under_the_pads(
     (Some(Base::Sleeper(Box::new(UnderSleeper { mass, support, by_layers, seating, usp }))), None)
 }
 
-/// Refuses what only a sleeper on a support can have.
+/// Refuses fields that only a sleeper on a support can have.
 fn without_support(form: &Record, field: &str, stands: &str, findings: &mut Findings) {
     let Some(base) = form.get(field).map(|slot| slot.span) else { return };
     let has = |slot: &Slot| match &slot.value {
@@ -179,14 +179,14 @@ fn without_support(form: &Record, field: &str, stands: &str, findings: &mut Find
             findings.report(
                 Diagnostic::new(Code::E0407, message)
                     .label(slot.span, format!("`{name}`"))
-                    .label(base, "instead of a support that gives")
+                    .label(base, "instead of an elastic support")
                     .help(format!("write `{name} = {nothing}` in trackform `{}`", form.name)),
             );
         }
     }
 }
 
-/// A part above the sleepers, which a rig for sleepers does without: `Some(None)`.
+/// A part above the sleepers, which a rig for sleepers does not need: `Some(None)`.
 fn upper<T>(
     form: &Record,
     name: &str,
@@ -202,7 +202,7 @@ fn upper<T>(
     read(&record, findings).map(Some)
 }
 
-/// A part that a trackform cannot do without.
+/// A part that a trackform needs.
 fn part(form: &Record, name: &str, why: &str, findings: &mut Findings) -> Option<Rc<Record>> {
     if let Some(record) = form.record(name) {
         return Some(record.clone());
@@ -216,7 +216,7 @@ fn part(form: &Record, name: &str, why: &str, findings: &mut Findings) -> Option
     None
 }
 
-/// `Some(None)` where there is none.
+/// `Some(None)` if there is none.
 fn seating(support: &Record) -> Option<Option<Seating>> {
     match support.record("seating") {
         Some(record) => {
@@ -235,7 +235,7 @@ fn cushion(record: &Record, sleeper: &Record) -> Option<Cushion> {
     })
 }
 
-/// A sleeper cannot bear on more than its base.
+/// Checks that the bearing area of a sleeper is not larger than its base.
 fn bears(sleeper: &Record, findings: &mut Findings) {
     let of = |field: &str| sleeper.number(field).map(|n| n.value);
     let (Some(area), Some(length), Some(width)) = (of("base_area"), of("length"), of("base_width")) else { return };
@@ -245,7 +245,7 @@ fn bears(sleeper: &Record, findings: &mut Findings) {
             Diagnostic::new(
                 Code::E0407,
                 format!(
-                    "the base of sleeper `{}` bears on {} m^2, but it is {} m x {} m, {} m^2",
+                    "the `base_area` of sleeper `{}` is {} m^2, but its base is only {} m x {} m = {} m^2",
                     sleeper.name,
                     number(area),
                     number(length),

@@ -1,4 +1,4 @@
-//! Trains, their shares of the traffic, and the counts of axles or of mass that a run goes through.
+//! Trains, their shares of the traffic, and the counts of axles or mass in a run.
 
 use super::vehicle::train;
 use crate::check::evaluate::number::Number;
@@ -9,10 +9,10 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Given, Order, Sequence, Traffic, Train};
 use crate::units::{Dimension, Quantity, number};
 
-/// Shares that sum to one within this are taken to do so.
+/// Largest difference of the sum of the shares from one.
 const ROUNDING: f64 = 1e-9;
 
-/// What counts of this scene mean.
+/// The meaning of counts in this scene.
 #[derive(Debug, Clone)]
 pub struct Counted {
     sequence: Sequence,
@@ -23,7 +23,7 @@ pub struct Counted {
     pub axles: u64,
 }
 
-/// Reads the traffic over the track, and what counts mean in it.
+/// Reads the traffic over the track, and the meaning of its counts.
 pub fn traffic(record: &Record, places: Option<&Places>, findings: &mut Findings) -> Option<(Traffic, Counted)> {
     let slot = record.get("trains")?;
     let Val::Pairs(pairs) = &slot.value else { return None };
@@ -107,7 +107,7 @@ fn shares(pairs: &[(Slot, Slot)], span: Span, findings: &mut Findings) -> Option
     None
 }
 
-/// How many trains of each kind run, to the nearest whole train, and the axles of all.
+/// The number of trains of each kind, rounded to whole trains, and the axles of all trains.
 fn trains_of_mix(
     trains: &[Train],
     shares: &[(f64, Span)],
@@ -126,15 +126,15 @@ fn trains_of_mix(
                 Diagnostic::new(
                     Code::E0602,
                     format!(
-                        "a share of {} % is {}, less than half a train `{}` of {}",
+                        "a share of {} % is {}, less than half of one train `{}` of {}",
                         number(100.0 * share),
                         carried(share * total.value),
                         train.name,
                         carried(one)
                     ),
                 )
-                .label(*place, "no train of it would run")
-                .label(span, "of all traffic")
+                .label(*place, "no train of this kind would run")
+                .label(span, "all traffic")
                 .help("leave the train out, or let more traffic run"),
             );
             return None;
@@ -145,7 +145,7 @@ fn trains_of_mix(
     Some((counts, axles))
 }
 
-/// Axles of a count that may be given as the mass carried: whole trains, to the nearest.
+/// Axles of a count that may be given as the mass carried, rounded to whole trains.
 fn whole_trains(slot: &Slot, train: &Train, findings: &mut Findings) -> Option<u64> {
     let Val::Number(n) = slot.value else { return None };
     if n.dimension == Dimension::MASS {
@@ -172,21 +172,21 @@ pub fn whole(count: f64, what: &str, span: Span, findings: &mut Findings) -> Opt
     Some(count as u64)
 }
 
-/// A count of something that this scene does not count.
+/// Refuses a count in a unit that this scene does not count.
 pub fn not_counted(dimension: Dimension, counts: &str, span: Span, findings: &mut Findings) {
     let message = format!("this scene counts the {counts}, found {}", dimension.describe());
-    let help = "counts are given in `axles` or as the mass carried, `MGT`, where trains run; in `cycles` where a load comes back";
+    let help = "counts are in `axles` or as the mass carried, `MGT`, if trains run; in `cycles` if a load is cyclic";
     findings.report(Diagnostic::new(Code::E0302, message).label(span, "not counted here").help(help));
 }
 
-/// The axle count at which something of a run happens: between two trains, and not after the last.
+/// The axle count of an event in a run: between two trains, and not after the last train.
 pub fn between_trains(slot: &Slot, counted: Option<&Counted>, findings: &mut Findings) -> Option<u64> {
     let Val::Number(n) = slot.value else { return None };
     axle_count(n, slot.span, true, counted, findings)
 }
 
-/// An axle count of the run, given in axles or as the mass carried. A mix of trains, and mass, go to the nearest train; a
-/// count of axles of one kind of train has to be one of its own where it is `exact`.
+/// An axle count of the run, given in axles or as the mass carried. Counts of a mix of trains, and counts of mass, are
+/// rounded to the nearest train; a count of axles for one kind of train must end with a train if it is `exact`.
 pub fn axle_count(
     n: Number,
     span: Span,
@@ -200,7 +200,7 @@ pub fn axle_count(
     }
     let by_mass = n.dimension == Dimension::MASS;
     let Some(counted) = counted else {
-        // what runs is not understood
+        // the traffic is not understood
         return if by_mass { None } else { whole_axles(n.value, span, findings) };
     };
     if n.value == 0.0 {
@@ -217,7 +217,7 @@ pub fn axle_count(
     let whole = if as_total { counted.total.value } else { carried(sequence, sequence.trains()) };
     if n.value > whole * (1.0 + ROUNDING) {
         let text = format!("the run ends after {} axles", counted.axles);
-        let asked = if by_mass { "so much is".into() } else { format!("{} axles are", number(n.value)) };
+        let asked = if by_mass { "this mass is".into() } else { format!("{} axles are", number(n.value)) };
         findings.report(Diagnostic::new(Code::E0602, text).label(span, format!("{asked} never reached")));
         return None;
     }
@@ -232,7 +232,7 @@ pub fn axle_count(
     if exact && !count.is_multiple_of(axles) {
         let below = count / axles * axles;
         findings.report(
-            Diagnostic::new(Code::E0602, format!("{count} axles are no whole number of trains of {axles} axles"))
+            Diagnostic::new(Code::E0602, format!("{count} axles are not a whole number of trains of {axles} axles"))
                 .label(span, "in the middle of a train")
                 .help(format!("write {below} or {} axles", below + axles)),
         );

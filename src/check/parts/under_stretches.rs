@@ -1,4 +1,4 @@
-//! What stretches make of the seats under them, and of the auxiliary rails beside these.
+//! Changes of seats and of auxiliary rails by stretches.
 
 use super::ground::{Carrying, Regrade, Under};
 use super::groundwork::has_ground;
@@ -15,20 +15,21 @@ use crate::scenario::{AuxiliaryRailSpan, Layer, Seat};
 use std::ops::Range;
 use std::rc::Rc;
 
-/// What only sleepers on a support that gives have.
+/// Fields that only sleepers on an elastic support have.
 const OF_SLEEPERS: [&str; 5] = ["sleeper", "usp", "support", "settlement", "layers"];
 
 /// A section before stretches change it.
 pub struct Unchanged<'a> {
     pub form: &'a Record,
     pub section: usize,
-    /// `None` where they are not understood.
+    /// `None` if they are not understood.
     pub layers: Option<&'a [Layer]>,
 }
 
-/// Gives the seats of a section what the stretches over them say; whether all was understood.
+/// Changes the seats of a section by the stretches over them; returns whether all was understood.
 ///
-/// The trackform under a set of stretches is asked for here, since only stretches that stand say which of them meet.
+/// The trackform under a set of stretches is built here, because overlaps are known only after stretches have their
+/// places.
 pub fn change_seats(
     unchanged: &Unchanged<'_>,
     stood: &[Instance],
@@ -47,7 +48,7 @@ pub fn change_seats(
         }
         changed.is_some()
     };
-    // each alone first, so that a mistake in one is said once
+    // each alone first, so that a mistake in one is reported once
     let wrong: Vec<&Instance> = here
         .iter()
         .filter(|(instance, seats)| !put(&[instance], seats.clone()))
@@ -107,7 +108,7 @@ fn changed(
     )
 }
 
-/// Refuses what only sleepers have where there are none.
+/// Refuses fields of sleepers if there are no sleepers.
 fn stands_right(
     instance: &Instance,
     form: &Record,
@@ -149,7 +150,8 @@ fn stands_right(
     None
 }
 
-/// Auxiliary rails along the track: those of sections, cut where a stretch says otherwise, and those of stretches.
+/// Auxiliary rails along the track: the rails of sections, cut by stretches that change them, and the rails of
+/// stretches.
 pub fn auxiliary_spans(
     forms: &[Rc<Record>],
     stood: &[Instance],

@@ -1,5 +1,5 @@
-//! From the objects of vehicles and trains to those of the scenario. Whole vehicles are halved: the scenario is of one
-//! rail.
+//! From the objects of vehicles and trains to the objects of the scenario. Whole vehicles are halved, because the
+//! scenario models one rail.
 
 use super::given::{agree, given};
 use crate::check::evaluate::value::{Record, Val};
@@ -58,13 +58,13 @@ fn vehicle(record: &Record, findings: &mut Findings) -> Option<Vehicle> {
     .filter(|v| axles_apart(record, v, findings))
 }
 
-/// Bogies must not stand in each other.
+/// Checks that bogies do not overlap.
 fn axles_apart(record: &Record, vehicle: &Vehicle, findings: &mut Findings) -> bool {
     if *vehicle.bogie_spacing > *vehicle.wheelset_spacing {
         return true;
     }
     let span = vehicle.bogie_spacing.origin.span().unwrap_or(record.span);
-    let mut mistake = Diagnostic::new(Code::E0407, "the bogies stand in each other")
+    let mut mistake = Diagnostic::new(Code::E0407, "the bogies overlap")
         .label(span, format!("bogie centres {} m apart", number(*vehicle.bogie_spacing)));
     if let Some(other) = vehicle.wheelset_spacing.origin.span() {
         mistake = mistake.label(other, format!("axles of a bogie {} m apart", number(*vehicle.wheelset_spacing)));
@@ -73,8 +73,8 @@ fn axles_apart(record: &Record, vehicle: &Vehicle, findings: &mut Findings) -> b
     false
 }
 
-/// The mass of the car body over one rail: given, or what the axle load leaves for it. `unsprung` is the mass of
-/// bogies and wheelsets over one rail, kg.
+/// The mass of the car body over one rail: given, or computed from the axle load. `unsprung` is the mass of bogies and
+/// wheelsets over one rail, kg.
 fn car_body_mass(record: &Record, unsprung: f64, findings: &mut Findings) -> Option<Given> {
     let body = given(record, "car_body.mass");
     let Some(load) = record.number("axle_load") else { return body };
@@ -129,7 +129,7 @@ fn car_body_mass(record: &Record, unsprung: f64, findings: &mut Findings) -> Opt
     Some(Given { value: derived, origin: Origin::Derived })
 }
 
-/// The largest speed, and where it varies its course along the whole track.
+/// The largest speed, and the profile along the whole track if the speed varies.
 fn speed(record: &Record, places: Option<&Places>, findings: &mut Findings) -> Option<(Given, Option<Profile>)> {
     match along(record, "speed")? {
         Along::Fixed(speed) => Some((speed, None)),
@@ -139,7 +139,7 @@ fn speed(record: &Record, places: Option<&Places>, findings: &mut Findings) -> O
             let what = format!("the speed of train `{}`", record.name);
             let cover = Cover { what, start, end, seats: None, smooth: false };
             let profile = lay_profile(&shape, origin, places, &cover, findings)?;
-            // straight or level between knots, so that no greater speed lies between them
+            // straight or level between knots, so that no larger speed lies between them
             let knots = profile.pieces.iter().flat_map(|piece| piece.knots().into_iter().map(|x| piece.curve.value(x)));
             let value = knots.fold(0.0, f64::max);
             Some((Given { value, origin }, Some(profile)))
@@ -147,7 +147,7 @@ fn speed(record: &Record, places: Option<&Places>, findings: &mut Findings) -> O
     }
 }
 
-/// A train, from a complete record; `None` where a diagnostic has been given.
+/// A train, from a complete record; `None` if a diagnostic has been given.
 pub(super) fn train(record: &Record, places: Option<&Places>, findings: &mut Findings) -> Option<Train> {
     let speed = speed(record, places, findings);
     let Val::Pairs(pairs) = &record.get("vehicles")?.value else { return None };
@@ -178,7 +178,7 @@ pub(super) fn train(record: &Record, places: Option<&Places>, findings: &mut Fin
         };
         findings.report(
             Diagnostic::new(Code::E0403, message)
-                .label(short.length.and_then(|l| l.origin.span()).unwrap_or(record.span), "over couplers")
+                .label(short.length.and_then(|l| l.origin.span()).unwrap_or(record.span), "length over couplers")
                 .help(format!("add a `length` of more than {} m to the vehicle", number(short.wheel_offsets()[3]))),
         );
         return None;

@@ -1,5 +1,5 @@
-//! Lays profiles along a track: turns their places into chainages and proves that they say every place that is asked for,
-//! each once.
+//! Lays profiles along a track: converts their places to chainages and checks that they give each required place
+//! exactly once.
 
 use super::chainage::{Places, TINY};
 use super::cover::{Cover, Interval, covers, no_gap};
@@ -45,7 +45,7 @@ impl From<Laid> for Varying {
     }
 }
 
-/// A field that may vary; `None` where it is not given or not understood.
+/// A field that may vary; `None` if it is not given or not understood.
 pub fn along(record: &Record, field: &str) -> Option<Along> {
     let slot = record.slot(field)?;
     match &slot.value {
@@ -55,7 +55,7 @@ pub fn along(record: &Record, field: &str) -> Option<Along> {
     }
 }
 
-/// Lays a field along the track; `None` where a diagnostic has been given.
+/// Lays a field along the track; `None` if a diagnostic has been given.
 pub fn lay(along: &Along, places: &Places, cover: &Cover, findings: &mut Findings) -> Option<Laid> {
     match along {
         Along::Fixed(given) => Some(Laid::Fixed(*given)),
@@ -63,7 +63,7 @@ pub fn lay(along: &Along, places: &Places, cover: &Cover, findings: &mut Finding
     }
 }
 
-/// Lays a profile along the track and proves that it covers what is asked; `None` where a diagnostic has been given.
+/// Lays a profile along the track and checks that it covers the required places; `None` if a diagnostic has been given.
 pub fn lay_profile(
     shape: &Shape,
     origin: Origin,
@@ -153,7 +153,7 @@ fn chainages_of(
     Some(found)
 }
 
-/// Points by ascending chainage; in the text they run one way.
+/// Points by ascending chainage; in the text they ascend or descend.
 fn lay_points(
     points: &[(Number, Span, Number)],
     mut found: Vec<([f64; 2], Span)>,
@@ -169,11 +169,15 @@ fn lay_points(
         let [(a, first), (b, second)] = [pair[0], pair[1]];
         if b[0] - a[0] < TINY {
             let same = (b[0] - a[0]).abs() < TINY;
-            let message = if same { "one place has two values" } else { "the places of a profile follow each other" };
+            let message = if same {
+                "one place has two values"
+            } else {
+                "the places of a profile must follow each other in order"
+            };
             findings.report(
                 Diagnostic::new(Code::E0507, message)
                     .label(first.max(second), if same { "again here" } else { "goes back from here" })
-                    .label(first.min(second), if same { "first here" } else { "where the one before stands" }),
+                    .label(first.min(second), if same { "first here" } else { "the place before" }),
             );
             return None;
         }
@@ -186,7 +190,7 @@ fn lay_points(
     Some(found.into_iter().map(|(point, _)| point).collect())
 }
 
-/// Pieces side by side, without gap or overlap where they are asked for.
+/// Pieces side by side, without gap or overlap at the required places.
 fn lay_spans(
     spans: &[(Reach, Shape)],
     from: Option<usize>,
@@ -221,7 +225,7 @@ fn lay_spans(
     for (interval, _, shape) in laid {
         let start = interval.start.max(within.start);
         let end = interval.end.min(within.end);
-        // what only touches belongs to the other side
+        // a place that is only touched belongs to the other side
         if end - start < TINY {
             continue;
         }
@@ -243,8 +247,8 @@ fn interval_of(places: &Places, reach: &Reach, from: Option<usize>, findings: &m
     Some(Interval { start, end, ramp: [a, b] })
 }
 
-/// Chainage of a place in a profile, and its seat where it is one: counted from the transition of its stretch, or from
-/// the only one; chainage in metres where there are several.
+/// Chainage of a place in a profile, and its seat if it is a seat. The place counts from the transition of its stretch,
+/// or from the only transition; with several transitions it is a chainage in metres.
 fn profile_place(
     places: &Places,
     at: Number,
@@ -259,8 +263,8 @@ fn profile_place(
     }
     if sleepers {
         findings.report(
-            Diagnostic::new(Code::E0504, "a track of several transitions has several sleepers of a number")
-                .label(span, "counted from which one?")
+            Diagnostic::new(Code::E0504, "on a track with several transitions several sleepers have the same number")
+                .label(span, "the transition is not named")
                 .help("give the places of a profile in metres of chainage: x = 0 is the first transition"),
         );
         return None;

@@ -1,4 +1,4 @@
-//! The places of a track: its sections, transitions and seats, and the chainage of whatever counts from them.
+//! The places of a track: its sections, transitions and seats, and the chainage of places that count from them.
 
 use crate::check::evaluate::number::Number;
 use crate::check::findings::Findings;
@@ -8,7 +8,7 @@ use crate::scenario::{Side, Transition};
 use crate::units::{Dimension, number};
 use std::ops::Range;
 
-/// Two chainages closer than this are one place, m.
+/// Two chainages that differ by less are one place, m.
 pub const TINY: f64 = 1e-6;
 
 /// The places of a track.
@@ -19,12 +19,12 @@ pub struct Places {
     pub transitions: Vec<Transition>,
     /// Chainage, section, transition and number of every seat.
     pub seats: Vec<(f64, usize, usize, i32)>,
-    /// The seed of whatever is random along the track and has none of its own.
+    /// The seed of random values along the track that have no seed of their own.
     pub seed: u64,
 }
 
 impl Places {
-    /// The transition that `from` names; the only one where nothing is named.
+    /// The transition that `from` names; without a name the only transition.
     pub fn transition(&self, from: Option<(&str, Span)>, place: Span, findings: &mut Findings) -> Option<usize> {
         match from {
             Some((name, span)) => {
@@ -127,7 +127,8 @@ impl Places {
         seat.filter(|i| steps > 0 && seats.contains(i))
     }
 
-    /// Seats of the two sections beside a transition with their numbers from there; all from the left without one.
+    /// Seats of the two sections beside a transition with their numbers from there; without a transition all seats from
+    /// the left.
     fn numbers_from(&self, transition: usize) -> impl Iterator<Item = (usize, i32)> + '_ {
         let boundary = self.transitions.get(transition);
         self.seats.iter().enumerate().filter_map(move |(i, &(_, section, ..))| match boundary {
@@ -165,7 +166,7 @@ impl Places {
         (0..self.seats.len()).min_by(|&a, &b| (self.seats[a].0 - x).abs().total_cmp(&(self.seats[b].0 - x).abs()))
     }
 
-    /// From where to where the track is nearest to a seat.
+    /// The interval of the track that is nearest to a seat.
     pub fn cell(&self, seat: usize) -> (f64, f64) {
         let middle = |i: usize, j: usize| (self.seats[i].0 + self.seats[j].0) / 2.0;
         let start = self.sections.first().map_or(0.0, |s| s.0);
@@ -181,8 +182,8 @@ impl Places {
         start..self.seats.partition_point(|s| s.1 <= section)
     }
 
-    /// Indices of the seats between two chainages. A span in metres that ends at the transition stays on its side: the seat
-    /// on the boundary belongs to what goes on beyond it.
+    /// Indices of the seats between two chainages. A span in metres that ends at the transition stays on its side: the
+    /// seat on the boundary belongs to the section beyond.
     pub fn seats_between(&self, ends: [f64; 2], transition: usize, beyond: bool) -> Range<usize> {
         let (low, high) = (ends[0].min(ends[1]) - TINY, ends[0].max(ends[1]) + TINY);
         let boundary = self.transitions.get(transition).map(|t| t.x).filter(|_| !beyond);
@@ -193,7 +194,7 @@ impl Places {
         start..start + self.seats[start..].iter().take_while(|seat| inside(seat)).count()
     }
 
-    /// `sleepers -6 .. -1`, of which transition where there are several.
+    /// `sleepers -6 .. -1`, with the transition if there are several.
     pub fn named(&self, seats: &Range<usize>) -> String {
         let (first, last) = (self.seats[seats.start], self.seats[seats.end - 1]);
         let of = |transition: usize| match self.transitions.get(transition) {
@@ -209,10 +210,10 @@ impl Places {
         }
     }
 
-    /// Distances to the seats on the left and on the right, m; beyond an end of the track as on the other side.
+    /// Distances to the seats on the left and on the right, m; at an end of the track the distance on the other side.
     pub fn spacings(&self, seat: usize, alone: f64) -> [f64; 2] {
         let x = self.seats[seat].0;
-        // without the last digits of differences, so that equal neighbours lie equally
+        // rounded differences, so that equal distances are exactly equal
         let apart = |other: f64| ((x - other).abs() * 1e9).round() / 1e9;
         let left = seat.checked_sub(1).map(|i| apart(self.seats[i].0));
         let right = self.seats.get(seat + 1).map(|next| apart(next.0));

@@ -6,7 +6,7 @@ use crate::check::evaluate::value::{Record, Slot, Val};
 use crate::check::findings::Findings;
 use crate::diag::{Code, Diagnostic, Span};
 
-/// The transitions that `from` names, each once; where nothing is named the only one. `place` counts from them.
+/// The transitions that `from` names, each once; without a name the only transition. `place` counts from them.
 fn transitions_named(record: &Record, places: &Places, place: Span, findings: &mut Findings) -> Option<Vec<usize>> {
     let names = match record.get("from").map(|slot| &slot.value) {
         None => return places.transition(None, place, findings).map(|only| vec![only]),
@@ -83,7 +83,7 @@ fn seats_from(
     Some((0..places.seats.len()).filter(inside).collect())
 }
 
-/// Indices of the seats that a record names; all of them where it names none.
+/// Indices of the seats that a record names; all seats if it names none.
 pub fn kept_seats(record: &Record, places: &Places, findings: &mut Findings) -> Option<Vec<usize>> {
     let mut seats = Vec::new();
     if record.get("at").is_some() {

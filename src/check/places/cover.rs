@@ -1,4 +1,4 @@
-//! Whether a profile says what is asked of it: every place, without a gap.
+//! Whether a profile covers every required place, without a gap.
 
 use super::chainage::{Places, TINY};
 use crate::check::findings::Findings;
@@ -6,28 +6,29 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::units::number;
 use std::ops::Range;
 
-/// What a profile must say.
+/// The places that a profile must cover.
 pub struct Cover {
     /// `the settlement of trackform `open``
     pub what: String,
     pub start: f64,
     pub end: f64,
-    /// Seats at which the value is asked for; every chainage where absent.
+    /// Seats at which the value is required; every chainage if absent.
     pub seats: Option<Range<usize>>,
     /// Data files are read as smooth curves.
     pub smooth: bool,
 }
 
-/// A span in chainage. A span of sleepers reaches half a bay beyond them, and to the end of the track from the last.
+/// A span in chainage. A span of sleepers reaches half a bay beyond them, and from the last sleeper to the end of the
+/// track.
 #[derive(Clone, Copy)]
 pub struct Interval {
     pub start: f64,
     pub end: f64,
-    /// From where to where a ramp over it runs: from end sleeper to end sleeper, in the order of the text.
+    /// The ends of a ramp over the span: from end sleeper to end sleeper, in the order of the text.
     pub ramp: [f64; 2],
 }
 
-/// Whether a profile reaches from one end of what is asked for to the other.
+/// Whether a profile reaches from one end of the required places to the other.
 pub fn covers(
     cover: &Cover,
     places: &Places,
@@ -43,7 +44,7 @@ pub fn covers(
     before.and(after)
 }
 
-/// Reports what is asked for strictly between two chainages.
+/// Reports required places strictly between two chainages.
 pub fn no_gap(
     cover: &Cover,
     places: &Places,

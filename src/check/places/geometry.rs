@@ -1,8 +1,8 @@
 //! Lays the sections out side by side, puts a seat on every place, and turns places into chainages.
 //!
-//! Sleeper -1 lies one spacing before a boundary, seat +1 on it, unless the transition says otherwise; a section in metres holds the sleepers that fit inside,
-//! one in sleepers ends one spacing beyond its last. On a track of one section the sleepers stand in the middle of
-//! their bays.
+//! Sleeper -1 lies one spacing before a boundary and seat +1 on the boundary, unless the transition states other
+//! places. A section in metres holds the sleepers that fit inside; a section in sleepers ends one spacing beyond its
+//! last sleeper. On a track with one section the sleepers lie in the middle of their bays.
 
 use super::chainage::{Places, TINY};
 use crate::check::evaluate::number::Number;
@@ -17,30 +17,30 @@ pub struct Plan {
     pub spacing: f64,
     /// Bays of another spacing, counted inwards from its left and from its right boundary, m.
     pub bays: [Vec<f64>; 2],
-    /// Distance of the nearest seat from its left and from its right boundary, m, where the transition states it.
+    /// Distance of the nearest seat from its left and from its right boundary, m, if the transition states it.
     pub first: [Option<f64>; 2],
     /// m, or a number of sleepers.
     pub length: Number,
-    /// Where the length stands.
+    /// The place of the length in the text.
     pub span: Span,
 }
 
 impl Plan {
-    /// Seats that it may hold at most.
+    /// Largest number of seats.
     pub(super) fn most_seats(&self) -> usize {
         let most = if self.length.dimension == Dimension::SLEEPERS { 1.0 } else { CLOSEST };
         (self.length.value / most).ceil() as usize
     }
 }
 
-/// How a section meets one of its boundaries.
+/// The kind of a boundary of a section.
 #[derive(Clone, Copy, PartialEq)]
 enum Edge {
     /// An end of the model.
     End,
-    /// The boundary of a transition, a bay away from the nearest seat: as on its softer side.
+    /// The boundary of a transition, a bay away from the nearest seat, on its softer side.
     Apart,
-    /// The boundary of a transition, with a seat on it: as on its stiffer side.
+    /// The boundary of a transition with a seat on it, on its stiffer side.
     Seated,
 }
 
@@ -49,7 +49,7 @@ pub const MOST_SEATS: usize = 1_000_000;
 /// The least spacing of the language, m.
 pub const CLOSEST: f64 = 0.3;
 
-/// Places sections and seats; sides are one a boundary.
+/// Places sections and seats; `sides` has one entry per boundary.
 pub fn lay_out(plans: &[Plan], sides: &[(String, Side)], seed: u64, findings: &mut Findings) -> Option<Places> {
     let edges: Vec<(Edge, Edge)> = (0..plans.len()).map(|i| edges(i, plans, sides)).collect();
     let mut sections = Vec::new();
@@ -64,7 +64,7 @@ pub fn lay_out(plans: &[Plan], sides: &[(String, Side)], seed: u64, findings: &m
         };
         let Some(left) = most.checked_sub(seats.len()) else {
             findings.report(
-                Diagnostic::new(Code::E0103, format!("a track of more than {MOST_SEATS} seats"))
+                Diagnostic::new(Code::E0103, format!("the track has more than {MOST_SEATS} seats"))
                     .label(plan.span, "too many from here on"),
             );
             return None;
@@ -98,7 +98,7 @@ pub fn lay_out(plans: &[Plan], sides: &[(String, Side)], seed: u64, findings: &m
     Some(places)
 }
 
-/// Share of a bay by which a section may miss a whole number of bays: a tenth of a millimetre that nobody lays.
+/// Share of a bay by which a section may differ from a whole number of bays: about a tenth of a millimetre.
 const WHOLE: f64 = 2e-4;
 
 /// Length of a section and the seats in it, as distances from its left end.
@@ -171,8 +171,11 @@ fn whole_sleepers(plan: &Plan, findings: &mut Findings) -> Option<usize> {
     let n = plan.length.value;
     if n.fract() != 0.0 || n < 1.0 {
         findings.report(
-            Diagnostic::new(Code::E0502, format!("a section holds a whole number of sleepers, found {}", number(n)))
-                .label(plan.span, "not a whole number"),
+            Diagnostic::new(
+                Code::E0502,
+                format!("a section must hold a whole number of sleepers, found {}", number(n)),
+            )
+            .label(plan.span, "not a whole number"),
         );
         return None;
     }
@@ -208,15 +211,15 @@ fn does_not_meet(plan: &Plan, usual: f64, findings: &mut Findings) {
         number((over * 10.0).round() / 10.0)
     );
     let plain = plan.bays.iter().all(Vec::is_empty) && plan.first == [None; 2];
-    // a structure has the length that it has
+    // the length of a structure is fixed
     let spacing = match usual.round() {
         bays if plain && bays >= 1.0 => {
-            format!("; where the length is given, write `spacing = {} m / {}`", number(length), number(bays))
+            format!("; if the length is fixed, write `spacing = {} m / {}`", number(length), number(bays))
         }
         _ => String::new(),
     };
     findings.report(
-        Diagnostic::new(Code::E0502, message).label(plan.span, "the counts from both transitions do not meet").help(
+        Diagnostic::new(Code::E0502, message).label(plan.span, "the bays from the two transitions do not meet").help(
             format!(
                 "write `{} m` or `{} m`, or give the length in sleepers{spacing}",
                 fits(usual.floor().max(0.0)),
@@ -241,10 +244,11 @@ fn edges(i: usize, plans: &[Plan], sides: &[(String, Side)]) -> (Edge, Edge) {
     (left.unwrap_or(Edge::End), right.unwrap_or(Edge::End))
 }
 
-/// Bays from one end of a section on: some of another spacing, then as usual.
+/// Bays from one end of a section: first bays of another spacing, then the usual bays.
 struct Row {
     usual: f64,
-    /// What the first bays together are longer than usual, m: of none, of one, ..., of all that are of another spacing.
+    /// Additional length of the first bays compared with usual bays, m: for no bay, one bay, ..., all bays of another
+    /// spacing.
     excess: Vec<f64>,
 }
 
@@ -262,7 +266,7 @@ impl Row {
         self.excess.len() - 1
     }
 
-    /// Length of so many bays, m.
+    /// Length of a number of bays, m.
     fn reach(&self, bays: usize) -> f64 {
         bays as f64 * self.usual + self.excess[bays.min(self.changed())]
     }
@@ -287,7 +291,7 @@ fn count(i: usize, n: usize, section: usize, x: f64, places: &Places) -> (usize,
     (t, if soft { -steps } else { steps })
 }
 
-/// Sums of spacings are cleaned of their last digits, so that a seat on a boundary lies on it.
+/// Rounds sums of spacings, so that a seat on a boundary lies exactly on it.
 fn tidy(x: f64) -> f64 {
     (x * 1e9).round() / 1e9
 }

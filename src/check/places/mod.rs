@@ -1,5 +1,5 @@
-//! Places along the track: where sections and seats lie, which of them a scene names, and what profiles say there. Records in,
-//! chainages out.
+//! Places along the track: the chainages of sections and seats, the seats that a scene names, and the values of
+//! profiles there.
 
 pub mod along;
 pub mod chainage;

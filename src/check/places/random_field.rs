@@ -1,16 +1,16 @@
-//! A random field along the track that is the same wherever and in whatever order it is asked for.
+//! A random field along the track that does not depend on the order of its evaluations.
 //!
-//! Values are normal, of mean 0 and variance 1, and correlated as `exp(-(d / L)^2)` over a distance d. This correlation, and
-//! not the exponential one, since a field with it is smooth: a level drawn from `exp(-d / L)` has a corner everywhere, and
-//! each would hit a wheel.
+//! Values are normal, with mean 0 and variance 1, and correlated as `exp(-(d / L)^2)` over a distance d. A field with
+//! this correlation is smooth. A level with the correlation `exp(-d / L)` would have a corner everywhere, and every
+//! corner would hit a wheel.
 //!
-//! The field is a sum of bells, `exp(-2 (d / L)^2)`, one on each point of a grid that is fixed to chainage 0. The height of a bell
-//! is drawn from the seed and the number of its point alone. Four points a correlation length make variance and correlation
-//! exact to 1e-16: what is left out by the sum is `exp(-(2 pi)^2)`.
+//! The field is a sum of bells, `exp(-2 (d / L)^2)`, one on each point of a grid that is fixed to chainage 0. The
+//! height of a bell is drawn from the seed and the number of its point alone. With four points per correlation length,
+//! variance and correlation are exact to 1e-16: the sum omits `exp(-(2 pi)^2)`.
 
 use std::f64::consts::PI;
 
-/// Grid points a correlation length.
+/// Grid points per correlation length.
 const POINTS: f64 = 4.0;
 /// Correlation lengths beyond which a bell is below 1e-14.
 const REACH: f64 = 4.0;
@@ -22,7 +22,7 @@ pub(super) struct RandomField {
 }
 
 impl RandomField {
-    /// The field of a name under a seed: other names are other fields.
+    /// The field for a name and a seed; different names have different fields.
     pub fn new(seed: u64, name: &str, correlation: f64) -> RandomField {
         // Fowler, Noll and Vo's hash
         let name = name
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn many_seeds_have_the_mean_the_variance_and_the_correlation() {
-        // the mean of n draws lies within 4 / sqrt(n) of its own
+        // the mean of n draws lies within 4 / sqrt(n) of the expected value
         let error = 4.0 / (SEEDS as f64).sqrt();
         for x in [-41.7, 0.0, 0.4, 250.0] {
             assert!(over_seeds(|f| f.value(x)).abs() < error);

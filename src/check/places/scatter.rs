@@ -1,4 +1,4 @@
-//! Lays a random field along the track, and holds its values against the range of what they are drawn for.
+//! Lays a random field along the track, and checks its values against the range of its field.
 
 use super::cover::Cover;
 use super::random_field::RandomField;
@@ -9,17 +9,18 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::Curve;
 use crate::units::{number, parse_unit};
 
-/// Points a correlation length where it is asked for everywhere: a spline through them leaves the field by 1e-4 of its scatter.
+/// Points per correlation length for a continuous curve: a spline through them differs from the field by 1e-4 of its
+/// scatter.
 const KNOTS: f64 = 8.0;
-/// Points before and after the track: what its ends do is damped by 3.7 a point.
+/// Points before and after the track: the effect of its ends decays by a factor of 3.7 per point.
 const BEYOND: i64 = 30;
 
-/// Where a random field is asked for.
+/// The places at which a random field is required.
 pub struct Scatter {
     /// m.
     pub start: f64,
     pub end: f64,
-    /// Chainages of the seats that ask for it, m; everywhere where absent.
+    /// Chainages of the seats that need it, m; everywhere if absent.
     pub seats: Option<Vec<f64>>,
     pub span: Span,
 }
@@ -68,7 +69,7 @@ pub fn random_curve(random: &Random, seed: u64, cover: &Cover, at: &Scatter, fin
     Some(curve)
 }
 
-/// Refuses a field that leaves the range of what it is drawn for.
+/// Refuses a random field with values outside the range of its field.
 fn within_range(
     random: &Random,
     seed: u64,
@@ -91,15 +92,15 @@ fn within_range(
     let per = measure.basis.map_or(String::new(), |b| format!(" per {}", b.names[0].0));
     let share = 100.0 * beyond.len() as f64 / points.len() as f64;
     let help = if measure.min >= 0.0 && !random.log_normal {
-        "let it scatter less, or write `distribution = log_normal`: its values stay positive"
+        "reduce the scatter, or write `distribution = log_normal`: its values stay positive"
     } else {
-        "let it scatter less, or move its mean"
+        "reduce the scatter, or change the mean"
     };
     findings.report(
         Diagnostic::new(
             Code::E0605,
             format!(
-                "{} of {} random values ({} %) of {} leave {} .. {}{unit}{per}",
+                "{} of {} random values ({} %) of {} are outside {} .. {}{unit}{per}",
                 beyond.len(),
                 points.len(),
                 number((10.0 * share).round() / 10.0),

@@ -1,8 +1,10 @@
-//! Spacing that varies in a stretch or over a section: bays laid out from the transition outwards, each as long as the spacing at the sleeper that
-//! it follows. The bay between a boundary and sleeper -1 is that of sleeper -1.
+//! Spacing that varies in a stretch or over a section. Bays are laid out from the transition outwards; the length of
+//! each bay is the spacing at the sleeper before it. The bay between a boundary and sleeper -1 has the spacing of
+//! sleeper -1.
 //!
-//! Places are where the bays before them lead, so that a profile is read before the track is laid out: leniently here, with its end
-//! values beyond its places. Once the seats lie, it is laid along them as any other, and what it does not say is told.
+//! The places of sleepers depend on the bays before them, so a profile of spacing is read before the track is laid out:
+//! here with its end values beyond its places. When the seats have places, the profile is laid along them like any
+//! other, and gaps are reported.
 
 use super::along::lay_profile;
 use super::chainage::{Places, TINY};
@@ -28,18 +30,18 @@ struct Graded {
     ground: Ground,
 }
 
-/// How places become chainages, as far as something is read at these.
+/// Conversion of places to chainages, for profiles that are read at chainages.
 #[derive(Clone, Copy)]
 struct Ground {
     /// Whether places grow with chainage.
     grows: bool,
     /// Chainage of place 0, m.
     origin: f64,
-    /// The seed of what is random.
+    /// The seed of random values.
     seed: u64,
 }
 
-/// Where a value is asked for: counted from the transition in sleepers and in m, and in chainage, m.
+/// The place of a value: counted from the transition in sleepers and in m, and as chainage, m.
 #[derive(Clone, Copy)]
 struct At {
     sleeper: f64,
@@ -47,14 +49,14 @@ struct At {
     chainage: f64,
 }
 
-/// On which side of a boundary bays are laid out.
+/// The side of a boundary on which bays are laid out.
 #[derive(Clone, Copy, PartialEq)]
 enum Bank {
     Soft,
     Stiff,
 }
 
-/// The spacing of a section, m; where it varies the mean of the values that it names.
+/// The spacing of a section, m; if it varies, the mean of the values that it names.
 pub fn usual_spacing(form: &Record) -> Option<Given> {
     let slot = form.get("spacing")?;
     match &slot.value {
@@ -64,7 +66,7 @@ pub fn usual_spacing(form: &Record) -> Option<Given> {
     }
 }
 
-/// Gives sections the bays that stretches change. What is wrong with their places is said where they stand.
+/// Gives sections the bays that stretches change. Mistakes in their places are reported elsewhere.
 pub fn spread(
     plans: &mut [Plan],
     sides: &[(String, Side)],
@@ -78,7 +80,7 @@ pub fn spread(
         let Some(Val::Range(a, b)) = stretch.get("over").map(|slot| &slot.value) else { continue };
         let Some(shape) = graded_by(stretch) else { continue };
         if sides.is_empty() && a.dimension == Dimension::LENGTH {
-            only_graded(shape.span, "counted in sleepers, on a track of one section", findings);
+            only_graded(shape.span, "in stretches counted in sleepers, on a track with one section", findings);
             return None;
         }
         readable(&shape, sides, false, findings)?;
@@ -92,14 +94,14 @@ pub fn spread(
             readable(shape, sides, true, findings)?;
             let ground = ground_of(sides, plans, seed);
             let Some(own) = whole_section(section, plan, sides, shape, ground) else {
-                only_graded(shape.span, "one value in a section in metres between two transitions", findings);
+                only_graded(shape.span, "in sections that do not lie in metres between two transitions", findings);
                 return None;
             };
             graded.push(own);
         }
     }
     for (section, (plan, form)) in plans.iter_mut().zip(forms).enumerate() {
-        // a section lies right of the transition before it and left of the one after it
+        // a section lies right of the transition before it and left of the transition after it
         let [before, after] = [section.checked_sub(1), Some(section)].map(|t| Some((t?, sides.get(t?)?.1)));
         let bank = |side: Side, left_of_it: bool| match (side == Side::SoftToStiff) == left_of_it {
             true => Bank::Soft,
@@ -117,7 +119,7 @@ pub fn spread(
         if let (Some(Val::Profile(_)), Dimension::SLEEPERS) =
             (form.get("spacing").map(|slot| &slot.value), plan.length.dimension)
         {
-            // a bay at an end where no seat stands on the boundary
+            // a bay at an end without a seat on the boundary
             let alone = sides.is_empty();
             let apart = |stiffer: Option<bool>, first: Option<f64>| match (stiffer, first) {
                 (_, Some(distance)) => distance > TINY,
@@ -133,14 +135,14 @@ pub fn spread(
     Some(())
 }
 
-/// Refuses what is read at chainages where nobody knows them yet.
+/// Refuses profiles that are read at chainages if these are not known yet.
 fn readable(shape: &Shape, sides: &[(String, Side)], of_section: bool, findings: &mut Findings) -> Option<()> {
     let by_chainage = shape.asks(&|kind| matches!(kind, ShapeKind::Random(_) | ShapeKind::Table { .. }));
     let by_places = shape.asks(&|kind| {
         matches!(kind, ShapeKind::Points(_) | ShapeKind::Spans(_) | ShapeKind::Ramp { over: Some(_), .. })
     });
     if sides.len() > 1 && (by_chainage || by_places && of_section) {
-        let how = "by places counted from the transition of a stretch, on a track of several";
+        let how = "by places counted from the transition of a stretch, on a track with several transitions";
         only_graded(shape.span, how, findings);
         return None;
     }
@@ -149,12 +151,12 @@ fn readable(shape: &Shape, sides: &[(String, Side)], of_section: bool, findings:
 
 fn ground_of(sides: &[(String, Side)], plans: &[Plan], seed: u64) -> Ground {
     let grows = sides.first().is_none_or(|(_, side)| *side == Side::SoftToStiff);
-    // without a transition sleeper +1 stands in the middle of its bay
+    // without a transition sleeper +1 lies in the middle of its bay
     let origin = if sides.is_empty() { plans.first().map_or(0.0, |plan| plan.spacing / 2.0) } else { 0.0 };
     Ground { grows, origin, seed }
 }
 
-/// Lays the profiles of spacing along the seats that they made: each has to say all of its own.
+/// Lays the profiles of spacing along the seats that they made: each must cover all its seats.
 pub fn prove_spacing(
     forms: &[Rc<Record>],
     stretches: &[Rc<Record>],
@@ -176,7 +178,7 @@ pub fn prove_spacing(
         let sides: Vec<_> = places.transitions.iter().map(|t| (t.name.clone(), t.side)).collect();
         for transition in from_of(stretch, &sides) {
             let ends = [*a, *b].map(|place| places.chainage_from(place, transition, over.span, findings));
-            // a span off the track is told where the stretch stands
+            // a span off the track is reported when the stretch is placed
             let [Some(from), Some(to)] = ends else { return Some(()) };
             let (start, end) = (from.min(to), from.max(to));
             let first = places.seats.partition_point(|seat| seat.0 < start - TINY);
@@ -191,7 +193,7 @@ pub fn prove_spacing(
     sound.then_some(())
 }
 
-/// Refuses sleepers that lie in each other, once a section.
+/// Refuses sleepers that overlap, once per section.
 pub fn sleepers_apart(seats: &[Seat], forms: &[Rc<Record>], places: &Places, findings: &mut Findings) -> Option<()> {
     let mut told = None;
     for (pair, at) in seats.windows(2).zip(places.seats.windows(2)) {
@@ -203,7 +205,7 @@ pub fn sleepers_apart(seats: &[Seat], forms: &[Rc<Record>], places: &Places, fin
         }
         told = Some(section);
         let message = format!(
-            "sleepers {:+} and {:+} lie in each other: {} m apart, where each is {} m wide",
+            "sleepers {:+} and {:+} overlap: they are {} m apart, but each is {} m wide",
             at[0].3,
             at[1].3,
             number((1e3 * apart).round() / 1e3),
@@ -214,18 +216,18 @@ pub fn sleepers_apart(seats: &[Seat], forms: &[Rc<Record>], places: &Places, fin
         findings.report(
             Diagnostic::new(Code::E0407, message)
                 .label(span, "spacing of this section")
-                .help("lay them further apart, or give them a smaller `base_width`; stretches change both"),
+                .help("write a larger `spacing` or a smaller `base_width`; stretches can change both"),
         );
     }
     told.is_none().then_some(())
 }
 
 fn only_graded(span: Span, how: &str, findings: &mut Findings) {
-    let message = format!("this version takes a `spacing` that varies {how}");
-    findings.report(Diagnostic::new(Code::E0411, message).label(span, "not this one"));
+    let message = format!("this version allows a varying `spacing` only {how}");
+    findings.report(Diagnostic::new(Code::E0411, message).label(span, "not allowed here"));
 }
 
-/// The transitions from which a stretch counts, as far as there are such.
+/// The existing transitions from which a stretch counts.
 fn from_of(stretch: &Record, sides: &[(String, Side)]) -> Vec<usize> {
     match stretch.get("from").map(|slot| &slot.value) {
         Some(Val::List(names)) => names
@@ -252,8 +254,9 @@ fn graded_by(stretch: &Record) -> Option<Rc<Shape>> {
     }
 }
 
-/// The spacing of a whole section as if a stretch set it, counted from the transition at its left, or else at its right; `None` for a
-/// section in metres between two transitions, where the bays would have to meet.
+/// The spacing of a whole section, treated as a stretch that counts from the transition at its left, or else at its
+/// right; `None` for a section in metres between two transitions, because the bays from the two transitions would have
+/// to meet.
 fn whole_section(
     section: usize,
     plan: &Plan,
@@ -274,16 +277,16 @@ fn whole_section(
     let reach = plan.length.value;
     let first = if by_sleepers { 1.0 } else { 0.0 };
     let over = if soft { [end(-reach), end(-first)] } else { [end(first), end(reach)] };
-    // a ramp runs as x grows, places run against it where the softer side lies right
+    // a ramp runs in the direction of x; places run against x if the softer side lies right
     Some((transition, Graded { over, shape: shape.clone(), turned: side != Side::SoftToStiff, ground }))
 }
 
-/// Bays outwards from a boundary, as far as any is changed: first the one between the boundary and the nearest seat, where that lies
-/// apart from it (`first` m away, where the transition says so), then the bay beyond each sleeper in turn, no more than the
-/// section may have.
+/// Bays outwards from a boundary, up to the last changed bay. The first is the bay between the boundary and the nearest
+/// seat, if the seat is not on the boundary (`first` m away, if the transition gives it). Then follows the bay beyond
+/// each sleeper, up to the largest number of bays of the section.
 fn bays(graded: &[&Graded], bank: Bank, plan: &Plan, first: Option<f64>) -> Vec<f64> {
     let usual = plan.spacing;
-    // one bay more than sleepers: the one before the first
+    // one bay more than sleepers: the bay before the first sleeper
     let most = (plan.most_seats() + 1).min(MOST_SEATS);
     let mut bays = Vec::new();
     let mut distance = 0.0;
@@ -324,7 +327,7 @@ impl Graded {
         if bank == Bank::Soft { self.over[0].value <= place + TINY } else { self.over[1].value >= place - TINY }
     }
 
-    /// The spacing at a sleeper; `None` where it says nothing.
+    /// The spacing at a sleeper; `None` if it is not given.
     fn spacing_at(&self, sleeper: usize, distance: f64, bank: Bank) -> Option<f64> {
         let [a, b] = self.over.map(|end| end.value);
         let place = self.place(sleeper, distance, bank);
@@ -342,25 +345,25 @@ impl Graded {
         let chainage = if grows { metres } else { -metres };
         let at = At { sleeper: sign * sleeper as f64, metres, chainage };
         let over = if self.turned { [self.over[1], self.over[0]] } else { self.over };
-        // what lies beyond the range of spacings is told once the seats lie
+        // spacings out of range are reported when the seats have places
         Some(self.shape.read(at, over, seed).clamp(CLOSEST, 2.0))
     }
 }
 
 impl At {
-    /// The place as a key of this dimension counts it.
+    /// The place in the unit of a key of this dimension.
     fn counted_by(self, key: Number) -> f64 {
         if key.dimension == Dimension::SLEEPERS { step(self.sleeper, key) } else { self.metres }
     }
 }
 
-/// A place on a line without the gap that there is no sleeper 0.
+/// A place on a line without the gap at sleeper 0, which does not exist.
 fn step(place: f64, key: Number) -> f64 {
     if key.dimension == Dimension::SLEEPERS && place > 0.0 { place - 1.0 } else { place }
 }
 
 impl Shape {
-    /// Whether a part of it is of some kind.
+    /// Whether a part of the shape has some kind.
     fn asks(&self, of: &dyn Fn(&ShapeKind) -> bool) -> bool {
         let inside = match &self.kind {
             ShapeKind::Spans(spans) => spans.iter().any(|(_, inner)| inner.asks(of)),
@@ -385,7 +388,7 @@ impl Shape {
         }
     }
 
-    /// Its value at a place, its end values beyond its own places; a ramp without a span of its own runs over `over`.
+    /// Its value at a place; beyond its own places its end values. A ramp without a span of its own runs over `over`.
     fn read(&self, at: At, over: [Number; 2], seed: u64) -> f64 {
         match &self.kind {
             ShapeKind::Constant(n) => n.value,
@@ -402,7 +405,7 @@ impl Shape {
                 points.first().map_or(0.0, |(key, ..)| between(points.len(), &row, at.counted_by(*key)))
             }
             ShapeKind::Spans(spans) => {
-                // where two meet, the right one counts
+                // if two meet, the right one counts
                 let reach = |(reach, _): &&(Reach, Shape)| {
                     let [a, b] = [reach.from, reach.to].map(|end| step(end.value, end));
                     let place = at.counted_by(reach.from);
@@ -423,7 +426,7 @@ impl Shape {
     }
 }
 
-/// The value of a broken line through so many points `[place, value]` that run one way, level beyond them.
+/// The value of a broken line through points `[place, value]` in order, constant beyond them.
 fn between(count: usize, point: &dyn Fn(usize) -> Option<[f64; 2]>, place: f64) -> f64 {
     let falls = matches!((point(0), point(count.saturating_sub(1))), (Some(a), Some(b)) if a[0] > b[0]);
     let row = |i: usize| point(if falls { count.checked_sub(i + 1)? } else { i });

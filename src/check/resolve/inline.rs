@@ -1,4 +1,4 @@
-//! Comparisons as written, with what their names stand for in the place of the names.
+//! Comparisons as written, with names replaced by their values.
 
 use super::{Resolver, literal};
 use crate::check::evaluate::number::Number;
@@ -11,7 +11,7 @@ use crate::syntax::parse;
 use crate::syntax::tree::{Item, Path, Value, ValueKind};
 
 impl Resolver<'_, '_> {
-    /// The comparison that stands at a place of some file.
+    /// The comparison at a place of a file.
     pub(super) fn comparison(&mut self, span: Span) -> String {
         let scope = self.scope_of(span);
         let text = format!("let comparison = {}", self.eval.files.sources.text(span));
@@ -57,17 +57,17 @@ impl Resolver<'_, '_> {
                 let rest = operands[1..].iter().zip(operators).map(|(o, op)| format!(" {} {o}", op.symbol()));
                 std::iter::once(operands[0].clone()).chain(rest).collect()
             }
-            // nothing else can stand in a comparison
+            // a comparison contains nothing else
             ValueKind::Object { .. } | ValueKind::Hole | ValueKind::Error => "?".into(),
         }
     }
 
-    /// A response stays, a `let` is written out, anything else is a number in some object.
+    /// A response is kept, a `let` is replaced by its value, and any other name is a number in an object.
     fn inline_path(&mut self, path: &Path, scope: ScopeId) -> String {
         if path.names.len() == 1 && Response::of_name(&path.names[0].text).is_some() {
             return path.text();
         }
-        // a name of its own, or a word such as that of a transition
+        // a name in a module, or a word such as the name of a transition
         if path.names.len() == 1 && !self.eval.scopes[scope].names.contains_key(&path.names[0].text) {
             return path.text();
         }
@@ -76,7 +76,7 @@ impl Resolver<'_, '_> {
             let tree = self.eval.scopes[target.id.scope].tree.clone();
             let Item::Let(binding) = &tree.items[target.id.item] else { return path.text() };
             let value = self.inline(&binding.value, target.id.scope);
-            // one that is in brackets, or one word, needs no others
+            // a value in brackets, or one word, needs no further brackets
             let alone = matches!(
                 binding.value.kind,
                 ValueKind::Number { .. } | ValueKind::Binary(..) | ValueKind::Call { .. } | ValueKind::Path(_)
@@ -96,7 +96,7 @@ impl Resolver<'_, '_> {
     }
 }
 
-/// `per` holds for all before it: in arithmetic what it is of stands in brackets.
+/// `per` applies to everything before it, so in arithmetic a value with `per` needs brackets.
 fn operand(text: String) -> String {
     if text.contains(" per ") && !text.starts_with('(') { format!("({text})") } else { text }
 }

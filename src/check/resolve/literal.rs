@@ -12,7 +12,7 @@ pub(super) struct Literal {
 }
 
 impl Literal {
-    /// The shortest one in the unit of a form that reads back to the same bits, else one in SI.
+    /// The shortest literal in the unit of a form that reads back to the same bits, else a literal in SI.
     pub fn new(number: Number, form: &Form) -> Literal {
         let usual = number.dimension.usual_unit();
         let si = number.dimension.si_unit();
@@ -73,7 +73,7 @@ pub(super) fn plain(value: f64) -> String {
     if size == 0.0 || (1e-4..1e9).contains(&size) { value.to_string() } else { format!("{value:e}") }
 }
 
-/// Where a value comes from, for the end of its line.
+/// The origin of a value, for the end of its line.
 pub(super) fn origin(origin: Origin, place: impl Fn(crate::diag::Span) -> String) -> String {
     match origin {
         Origin::Written(span) | Origin::Library(span) => place(span),

@@ -1,9 +1,9 @@
-//! The scene as one file: every object that takes part, with every default and library value written out and where it comes
-//! from. The text is itself a legal file and makes the same scene, to the bit.
+//! The scene as one file: every object of the scene, with every default and library value written out and its origin.
+//! The text is a legal file and gives the same scene, to the bit.
 //!
-//! Objects are written as they stand after extension and overrides, parts before what names them. What stood in the place of a
-//! field under a name of its own becomes a declaration, so that sections, vehicles, layers and laws keep their names. Studies are
-//! left out: they edit lines of the file in which they stand.
+//! Objects are written as they are after extension and overrides; an object is written before the objects that name it.
+//! A named object inside a field becomes a declaration, so that sections, vehicles, layers and laws keep their names.
+//! Studies are left out, because they edit lines of their own file.
 
 mod inline;
 pub(super) mod literal;
@@ -23,8 +23,8 @@ use crate::syntax::tree::Item;
 use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
 
-/// The text that [`super::check`] takes, as one file with everything written out; `None` where it has errors or no track. A
-/// data file that it names must lie where it lies for the original.
+/// The text of [`super::check`] as one file with everything written out; `None` if it has errors or no track. Data
+/// files must lie at the same place as for the original.
 pub fn resolve(name: &str, text: &str, modules: &dyn Modules, overrides: &[Override]) -> Option<String> {
     let (_, resolved) = with_evaluator(name, text, modules, overrides, |eval| {
         if diag::has_errors(&eval.findings.diagnostics) || !eval.declares("track") {
@@ -40,11 +40,11 @@ struct Resolver<'c, 'm> {
     eval: &'c mut Evaluator<'m>,
     /// Declarations by the place of their header.
     headers: HashMap<Span, ItemId>,
-    /// Names that are given, or that would mean something else.
+    /// Names that are used, or that would have another meaning.
     taken: BTreeSet<String>,
     /// Objects with a name, and that name.
     named: Vec<(Rc<Record>, String)>,
-    /// Declarations so far, parts before what names them.
+    /// Declarations so far; each before the declarations that name it.
     written: Vec<(&'static Kind, String)>,
 }
 
@@ -67,7 +67,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
     /// The whole file, unformatted.
     fn file(mut self, name: &str) -> String {
         self.roots();
-        // in the order of the vocabulary; objects of a kind stay as they came
+        // in the order of the vocabulary; objects of a kind keep their order
         self.written.sort_by_key(|(kind, _)| KINDS.iter().position(|k| k.name == kind.name));
         let head = format!("// {name}, with everything written out that it uses or leaves to a default\n");
         let left_out = self.eval.declares("study");
@@ -76,7 +76,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
         format!("{head}{studies}\n{}", written.join("\n"))
     }
 
-    /// What acts by itself, and with it all that it names.
+    /// Declarations that act by themselves, and all objects that they name.
     fn roots(&mut self) {
         let tree = self.eval.scopes[self.eval.main].tree.clone();
         for (item, declared) in tree.items.iter().enumerate() {
@@ -90,7 +90,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
                 self.declare(&record, &name);
             }
         }
-        // both hold for every scene, said or not
+        // both act in every scene, even if not given
         for kind in ["scenario", "solve"].into_iter().filter_map(schema::kind) {
             if !self.eval.declares(kind.name) {
                 let span = Span::new(diag::FileId(0), 0, 0);
@@ -99,7 +99,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
         }
     }
 
-    /// Writes a declaration, after those of what it names.
+    /// Writes a declaration, after the declarations that it names.
     fn declare(&mut self, record: &Rc<Record>, name: &str) {
         let docs: String = self.docs(record).iter().map(|line| format!("/// {}\n", line.trim())).collect();
         let after = self.after(record);
@@ -109,7 +109,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
         self.written.push((record.kind, format!("{docs}{header} {{{after}\n{lines}}}\n")));
     }
 
-    /// An object as a value: its name, or itself where it has none.
+    /// An object as a value: its name, or the object itself if it has no name.
     fn object(&mut self, record: &Rc<Record>) -> String {
         if let Some((_, name)) = self.named.iter().find(|(known, _)| Rc::ptr_eq(known, record)) {
             return name.clone();
@@ -135,7 +135,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
         same.then_some(id)
     }
 
-    /// The name of an object from elsewhere, another one where that means something here.
+    /// The name of an object from another file; another name if this one has a meaning here.
     fn free_name(&self, record: &Record) -> String {
         let free = |name: &String| !self.taken.contains(name) && !is_word(name);
         let kind = record.kind.name;
@@ -160,7 +160,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
         if record.kind.changes().is_some() {
             self.changes(record, &mut out);
         }
-        // where data comes from says so itself
+        // the origin of data is given in its own fields
         for field in schema::COMMON {
             if let Some(slot) = record.get(field.name) {
                 let value = self.value(&field.form, slot);
@@ -170,14 +170,14 @@ impl<'c, 'm> Resolver<'c, 'm> {
         out
     }
 
-    /// A scene without a title is called as its file.
+    /// The title; without one the name of the file.
     fn title(&self) -> String {
         let name = &self.eval.files.sources.get(diag::FileId(0)).name;
         let stem = name.rsplit(['/', '\\']).next().unwrap_or(name).trim_end_matches(".track");
         format!("title = {}  // the file's name\n", text::quoted(stem))
     }
 
-    /// What a stretch changes: whole fields as they are, parts of fields by their paths.
+    /// The changes of a stretch: whole fields, or parts of fields by their paths.
     fn changes(&mut self, record: &Record, out: &mut String) {
         let fields: &'static [Field] = record.kind.changes().map_or(&[], |kind| kind.fields);
         for field in fields {
@@ -192,7 +192,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
         }
     }
 
-    /// `pad.stiffness = ...` of an object of which nobody knows the rest.
+    /// `pad.stiffness = ...` of an object whose other fields are unknown.
     fn paths(&mut self, path: &str, record: &Record, out: &mut String) {
         for field in record.kind.fields {
             let Some(slot) = record.get(field.name) else { continue };
@@ -207,7 +207,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
         }
     }
 
-    /// `layers.ballast = ...`: a pair of a list that stands in the trackform under the stretch. The last one counts.
+    /// `layers.ballast = ...`: a pair of a list in the trackform under the stretch. The last one counts.
     fn replaced_parts(&mut self, record: &Record, field: &'static Field, out: &mut String) {
         let Form::Pairs { value: form, .. } = &field.form else { return };
         let inside = |path: &[syntax::tree::Name]| path.len() == 2 && path[0].text == field.name;
@@ -225,7 +225,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
     /// `path = value  // origin`
     fn line(&mut self, path: &str, form: &'static Form, slot: &Slot) -> String {
         let value = self.value(form, slot);
-        // an object says of each of its fields where it comes from
+        // an object gives the origin of each field
         if value.starts_with('{') {
             return format!("{path} = {value}\n");
         }
@@ -250,7 +250,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
         }
     }
 
-    /// What an object extends, as a comment behind its bracket.
+    /// The base of an object, as a comment behind its bracket.
     fn after(&self, record: &Record) -> String {
         let replaced_in = self.headers.contains_key(&record.span) && {
             let known = self.headers.get(&record.span).and_then(|id| self.eval.known(*id));
@@ -278,7 +278,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
     }
 }
 
-/// Whether some field reads a bare name as a word of its own.
+/// Whether a field reads a bare name as a word.
 fn is_word(name: &str) -> bool {
     let reserved = ["use", "let", "as", "per", "yes", "no", "all", "rest"];
     reserved.contains(&name) || schema::word(name).is_some() || schema::kind(name).is_some()

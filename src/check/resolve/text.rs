@@ -9,7 +9,7 @@ use crate::schema::{Field, Form, Word};
 use crate::units::Dimension;
 use std::collections::BTreeMap;
 
-/// `"text"`, its quotes and backslashes marked.
+/// `"text"`, with escaped quotes and backslashes.
 pub(super) fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }
@@ -39,7 +39,7 @@ impl Resolver<'_, '_> {
             Val::Response(response) => response.name().to_string(),
             Val::Written(..) if matches!(form, Form::Comparison) => self.comparison(slot.span),
             Val::Hole => "?".into(),
-            // studies are left out, and a sound file has nothing unreadable
+            // studies are left out, and a file without mistakes has no unreadable values
             Val::Written(..) | Val::Error => self.eval.files.sources.text(slot.span).to_string(),
         }
     }
@@ -86,7 +86,7 @@ impl Resolver<'_, '_> {
             ShapeKind::Table { column, rows, ends } => {
                 let basis = rows.first().and_then(|(_, n)| n.basis).map_or(String::new(), |b| format!(" per {b}"));
                 let file = quoted(&self.eval.files.sources.get(ends[0].file).name);
-                // one that is no name is the only one, and needs none
+                // a column without a name is the only column and needs no name
                 let named = column.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
                 let column = if named { format!(", column = {column}") } else { String::new() };
                 format!("file({file}{column}){basis}")
@@ -95,7 +95,7 @@ impl Resolver<'_, '_> {
     }
 }
 
-/// What is drawn, and from which stream, so that it is drawn again wherever it stands.
+/// The distribution and the stream of random values, so that the same values are drawn at any place.
 fn random(field: &Random, form: &Form) -> String {
     let deviation = Number { value: field.deviation, ..field.mean };
     let metres = Number { value: field.correlation, dimension: Dimension::LENGTH, basis: None, factor: 1.0 };
@@ -114,13 +114,13 @@ fn place(at: Number) -> String {
     number(at, &Form::Place)
 }
 
-/// A span, or the one sleeper that it is.
+/// A span, or one sleeper.
 fn span(reach: Reach) -> String {
     let single = reach.from.value == reach.to.value && reach.from.dimension == Dimension::SLEEPERS;
     if single { place(reach.from) } else { range(reach.from, reach.to, &Form::Span) }
 }
 
-/// `[a, b]`; over lines where an item is. A unit that all items share would save little and hide much.
+/// `[a, b]`; over several lines if an item is. Each item has its own unit.
 fn listed(items: &[String]) -> String {
     if items.iter().any(|item| item.contains('\n')) || items.iter().map(String::len).sum::<usize>() > 90 {
         return format!("[\n{}\n]", items.join("\n"));

@@ -12,11 +12,11 @@ use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Every text that a check has read, and the way to more of them.
+/// Every text that a check has read, and the source of further texts.
 pub struct Files<'m> {
     pub sources: Sources,
     pub modules: &'m dyn Modules,
-    /// Data files by name; `None` where they could not be read.
+    /// Data files by name; `None` if they could not be read.
     tables: HashMap<String, Option<Rc<Table>>>,
     /// Surfaces of grains by name, as `tables`.
     surfaces: HashMap<String, Option<Arc<Mesh>>>,
@@ -28,7 +28,7 @@ impl<'m> Files<'m> {
         Files { sources, modules, tables: HashMap::new(), surfaces: HashMap::new() }
     }
 
-    /// A data file below the main file's folder; `None` where a diagnostic has been given.
+    /// A data file below the main file's folder; `None` if a diagnostic has been given.
     pub fn table(&mut self, name: &str, span: Span, findings: &mut Findings) -> Option<Rc<Table>> {
         if let Some(known) = self.tables.get(name) {
             return known.clone();
@@ -38,7 +38,7 @@ impl<'m> Files<'m> {
         table
     }
 
-    /// A closed surface from a data file; `None` where a diagnostic has been given.
+    /// A closed surface from a data file; `None` if a diagnostic has been given.
     pub fn surface(&mut self, name: &str, span: Span, findings: &mut Findings) -> Option<Arc<Mesh>> {
         if let Some(known) = self.surfaces.get(name) {
             return known.clone();
@@ -67,7 +67,7 @@ impl<'m> Files<'m> {
         table.filter(|_| sound)
     }
 
-    /// The bytes of a data file below the main file's folder; `None` where a diagnostic has been given.
+    /// The bytes of a data file below the main file's folder; `None` if a diagnostic has been given.
     fn data_file(&self, name: &str, span: Span, findings: &mut Findings) -> Option<Vec<u8>> {
         match self.data(name) {
             Ok(bytes) => Some(bytes),
@@ -95,7 +95,7 @@ fn refusal(name: &str, error: &DataError) -> Diagnostic {
     let (message, help) = match error {
         DataError::Missing => (
             format!("there is no file `{name}` below the main file's folder"),
-            "put the file beside the scene, or below it, and name it from there",
+            "put the file into the folder of the scene or below it, and write its path from there",
         ),
         DataError::Outside => (
             format!("`{name}` does not stay below the main file's folder"),
@@ -103,10 +103,10 @@ fn refusal(name: &str, error: &DataError) -> Diagnostic {
         ),
         DataError::TooLarge(bytes) => (
             format!("`{name}` has {} MiB, more than {} MiB", bytes.div_ceil(1 << 20), LARGEST_DATA_FILE >> 20),
-            "thin the data: a row every 0.1 m shows all that a wheel feels",
+            "reduce the data: one row every 0.1 m is enough for a wheel",
         ),
         DataError::Unreadable(cause) => {
-            (format!("`{name}` cannot be read: {cause}"), "make it a file that can be read")
+            (format!("`{name}` cannot be read: {cause}"), "check that it is a file and that you may read it")
         }
     };
     Diagnostic::new(Code::E0508, message).help(help)

@@ -1,5 +1,5 @@
-//! Headers of declarations that say one thing wrong: what the rest of the declaration shows to have been meant is put in its place,
-//! so that one slip is one mistake.
+//! Headers of declarations with one mistake. The rest of the declaration shows which header was meant; this header is
+//! used, so that one slip gives one mistake.
 
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, Fix};
@@ -8,7 +8,7 @@ use crate::syntax::tree::{Declaration, Item, Tree, ValueKind};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Mends the headers of a tree.
+/// Corrects the headers of a tree.
 pub fn mended(tree: &mut Arc<Tree>) -> Vec<Diagnostic> {
     let mut kinds: BTreeMap<&str, Option<&'static Kind>> = BTreeMap::new();
     for item in &tree.items {
@@ -46,7 +46,7 @@ pub fn mended(tree: &mut Arc<Tree>) -> Vec<Diagnostic> {
     mistakes
 }
 
-/// `track stiff : open { ... }`, where `open` is a trackform and the fields are those of one.
+/// `track stiff : open { ... }`, if `open` is a trackform and the fields are fields of a trackform.
 fn other_kind(d: &Declaration, kinds: &BTreeMap<&str, Option<&'static Kind>>) -> Option<(Declaration, Diagnostic)> {
     let kind = schema::kind(&d.kind.text)?;
     let [base] = d.base.as_ref()?.names.as_slice() else { return None };
@@ -58,7 +58,7 @@ fn other_kind(d: &Declaration, kinds: &BTreeMap<&str, Option<&'static Kind>>) ->
     let name = d.name.as_ref().map_or(String::new(), |name| format!(" {}", name.text));
     let message = format!("a {} cannot extend `{}`, which is a {}", kind.name, base.text, of_base.name);
     let mistake = Diagnostic::new(Code::E0205, message)
-        .label(d.kind.span, format!("its fields are those of a {}", of_base.name))
+        .label(d.kind.span, format!("its fields are fields of a {}", of_base.name))
         .help(format!("write `{}{name} : {}`", of_base.name, base.text))
         .fix(Fix::replace(d.kind.span, of_base.name));
     let mut mended = d.clone();
@@ -66,7 +66,7 @@ fn other_kind(d: &Declaration, kinds: &BTreeMap<&str, Option<&'static Kind>>) ->
     Some((mended, mistake))
 }
 
-/// `trackform: open { ... }`, where nothing is called `open`.
+/// `trackform: open { ... }`, if nothing is called `open`.
 fn name_behind_colon(
     d: &Declaration,
     kinds: &BTreeMap<&str, Option<&'static Kind>>,
@@ -78,7 +78,7 @@ fn name_behind_colon(
         return None;
     }
     let mistake = Diagnostic::new(Code::E0201, format!("nothing is called `{}`", base.text))
-        .label(base.span, "behind `:` stands what is extended")
+        .label(base.span, "the name behind `:` is the base")
         .help(format!("write `{} {} {{`, without the colon", kind.name, base.text))
         .fix(Fix::replace(d.kind.span.to(base.span), format!("{} {}", kind.name, base.text)));
     let mut mended = d.clone();
@@ -86,7 +86,7 @@ fn name_behind_colon(
     Some((mended, mistake))
 }
 
-/// The kind that a declaration names by what it is called elsewhere.
+/// The kind of a declaration with a name from other programs.
 fn called_kind(d: &Declaration) -> Option<&'static Kind> {
     let stands = schema::KINDS.iter().filter(|k| k.role != Role::Nested).map(|k| k.name);
     if schema::kind(&d.kind.text).is_some() || d.fields.is_empty() && d.base.is_none() {
@@ -95,19 +95,19 @@ fn called_kind(d: &Declaration) -> Option<&'static Kind> {
     schema::kind(called(Names::Kinds, &d.kind.text, stands)?)
 }
 
-/// `ballast stone { ... }` is read on as a granular.
+/// `ballast stone { ... }` is read as a granular.
 fn foreign_kind(d: &Declaration) -> Option<(Declaration, Diagnostic)> {
     let kind = called_kind(d)?;
     let mistake = Diagnostic::new(Code::E0401, format!("unknown kind `{}`", d.kind.text))
         .label(d.kind.span, "not a kind")
         .meant(d.kind.span, kind.name);
     let mut mended = d.clone();
-    // without a name it is called by its kind
+    // without a name it takes the name of its kind
     mended.kind.text = kind.name.to_string();
     Some((mended, mistake))
 }
 
-/// `traffic = { ... }`, which has been told, is the declaration of that kind.
+/// `traffic = { ... }`, which has been reported, is the declaration of that kind.
 fn kind_as_let(item: &Item) -> Option<Declaration> {
     let Item::Let(binding) = item else { return None };
     let ValueKind::Object { base: None, fields } = &binding.value.kind else { return None };

@@ -55,7 +55,7 @@ fn entries(module: &'static str, text: &str) -> Vec<Entry> {
     declared.collect()
 }
 
-/// What a check reads of the library. To read all of it takes longer than most scenes.
+/// The part of the library that a check reads. Reading the whole library takes longer than checking most scenes.
 #[derive(Clone)]
 pub enum Part {
     Whole,
@@ -65,11 +65,11 @@ pub enum Part {
 /// Module and name of an entry.
 type Key = (&'static str, &'static str);
 
-/// Longer texts gain nothing: beside them the library is short.
+/// For longer texts the whole library is read, because it is short beside them.
 const LONGEST: usize = 1 << 16;
 
 impl Part {
-    /// What these texts, and the defaults of fields, ask for by its full name, and what that names or builds on.
+    /// Entries that these texts and the defaults of fields name in full, and the entries that these name or extend.
     pub fn named_in<'t>(texts: impl Iterator<Item = &'t str> + Clone) -> Part {
         if texts.clone().map(str::len).sum::<usize>() > LONGEST {
             return Part::Whole;
@@ -99,7 +99,7 @@ impl Part {
         }
     }
 
-    /// A module's text, with blanks in the place of what is not read: what is read keeps its place.
+    /// A module's text, with unread parts replaced by blanks, so that read parts keep their place.
     pub(super) fn text_of(&self, module: &'static str, text: &'static str) -> Cow<'static, str> {
         if let Part::Whole = self {
             return Cow::Borrowed(text);
@@ -110,7 +110,7 @@ impl Part {
             if self.has((module, name)) {
                 read.push_str(&text[place]);
             } else {
-                // a comment is skipped at one go
+                // a comment is skipped as a whole
                 read.push_str("//");
                 read.extend(std::iter::repeat_n(' ', place.len() - 2));
             }
@@ -135,7 +135,7 @@ fn known(entries: &Entries, (module, name): (&str, &str)) -> Option<Key> {
     Some((module, entries.get_key_value(name)?.0))
 }
 
-/// `rails.UIC60`, wherever it stands, and whatever follows it.
+/// `rails.UIC60`, anywhere in a line, with the text behind it.
 fn full_names(text: &str) -> impl Iterator<Item = (&str, &str)> {
     let part = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
     text.split(move |c| !part(c)).filter_map(|path| {
@@ -150,8 +150,8 @@ fn base(declared: &str) -> Option<&str> {
     header.split_once(" : ")?.1.split(' ').next()
 }
 
-/// The declarations of a module by name, each with its `///` lines. The library is formatted: a declaration ends with the
-/// first line that is a bracket alone.
+/// The declarations of a module by name, each with its `///` lines. The library is formatted: a declaration ends with
+/// the first line that is a bracket alone.
 fn outline(text: &'static str) -> impl Iterator<Item = (&'static str, Range<usize>)> {
     let (mut at, mut start, mut name) = (0, None, None);
     text.split_inclusive('\n').filter_map(move |line| {

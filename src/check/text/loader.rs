@@ -1,4 +1,4 @@
-//! Brings in modules: reads every file that a scene uses and makes the names of each known.
+//! Loads modules: reads every file that a scene uses and registers its names.
 
 use super::files::Files;
 use super::headers;
@@ -16,13 +16,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
-/// A text and those of the user's modules that it seems to use, by the look of its lines.
+/// A text and the user's modules that its lines seem to use.
 pub fn seeming_texts<'t>(main: &'t str, modules: &dyn Modules) -> Vec<Cow<'t, str>> {
     let mut texts = vec![Cow::Borrowed(main)];
     let (mut known, mut next) = (BTreeSet::new(), 0);
     while let Some(text) = texts.get(next) {
         let uses = text.lines().filter_map(|line| line.trim().strip_prefix("use ")?.split([' ', '\t', '/']).next());
-        // what is no path of names is told where it is read
+        // a path that is not made of names is reported when it is read
         let named = uses.filter(|path| path.split('.').all(is_name));
         let files = named.map(|path| format!("{}.track", path.replace('.', "/")));
         let new: Vec<String> = files.filter(|file| known.insert(file.clone())).collect();
@@ -37,12 +37,12 @@ fn is_name(part: &str) -> bool {
     !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
 }
 
-/// Whether a name is another one for the standard library.
+/// Whether a name is another name for the standard library.
 fn is_library(name: &str) -> bool {
     ["std", "stdlib", "standard"].contains(&name.to_lowercase().as_str())
 }
 
-/// What was meant by a module that has no file: the standard library, or one of its modules.
+/// Help for a module that has no file: the standard library, or one of its modules.
 fn missing_file(name: &str) -> Option<Help> {
     if is_library(name) {
         return Some(Help {
@@ -55,7 +55,7 @@ fn missing_file(name: &str) -> Option<Help> {
     module.then(|| Help { said: said(), writes: vec!["std".into(), format!("std.{name}")] })
 }
 
-/// What is said of a module whose file is not read.
+/// The mistake of a module whose file cannot be read.
 fn unread(relative: &str, names: &[&str], error: &DataError, span: Span) -> Diagnostic {
     let (message, label, help) = match error {
         DataError::Missing => (
@@ -83,7 +83,7 @@ fn unread(relative: &str, names: &[&str], error: &DataError, span: Span) -> Diag
         DataError::Unreadable(cause) => (
             format!("`{relative}` cannot be read: {cause}"),
             "not read",
-            Some(Help::say("make it a file that can be read")),
+            Some(Help::say("check that it is a file and that you may read it")),
         ),
     };
     Diagnostic::new(Code::E0204, message).label(span, label).maybe_advise(span, help)
@@ -94,24 +94,24 @@ fn unread(relative: &str, names: &[&str], error: &DataError, span: Span) -> Diag
 struct BroughtIn {
     modules: BTreeMap<String, ScopeId>,
     broken: BTreeSet<String>,
-    /// Where the file itself names a module, by name.
+    /// The place at which the file names each module, by name.
     places: BTreeMap<String, Span>,
 }
 
-/// Names that values have, which nothing else may have.
+/// Names of values, which no declaration may have.
 const TAKEN: [&str; 6] = ["none", "auto", "yes", "no", "rest", "all"];
 
-/// A scene with all that it uses.
+/// A scene with all files that it uses.
 pub struct Loaded<'m> {
     pub files: Files<'m>,
     pub scopes: Vec<Scope>,
     pub main: ScopeId,
-    /// Where defaults are read: every module of the standard library is known there.
+    /// The scope of defaults: every module of the standard library is known there.
     pub standard: ScopeId,
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// Reads a text, with some lines edited, and all that it uses.
+/// Reads a text, with some lines edited, and all files that it uses.
 pub fn load<'m>(name: &str, text: &str, edits: &[Override], library: Part, modules: &'m dyn Modules) -> Loaded<'m> {
     let mut loader = Loader::new(modules, library);
     let main = loader.load(name, text.to_string(), edits);
@@ -146,7 +146,7 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// Reads a text, with some lines edited, and all that it uses.
+    /// Reads a text, with some lines edited, and all files that it uses.
     fn load(&mut self, name: &str, text: String, edits: &[Override]) -> ScopeId {
         let file = self.sources.add(name, text, false);
         let parsed = self.modules.parsed(file, &self.sources.get(file).text);
@@ -154,7 +154,7 @@ impl<'a> Loader<'a> {
     }
 
     fn scope(&mut self, name: &str, parsed: Parsed, library: bool, edits: &[Override]) -> ScopeId {
-        // modules know the main file by its name below its own folder
+        // modules find the main file by its name below its own folder
         let key =
             if self.scopes.is_empty() && self.reading.is_empty() { name.rsplit(['/', '\\']).next() } else { None };
         let key = key.unwrap_or(name).to_string();
@@ -222,13 +222,18 @@ impl<'a> Loader<'a> {
                 let near = names.get(1).and_then(|n| nearest(n, library::MODULES.iter().map(|(m, _)| *m)));
                 let (message, help) = match &used.alias {
                     Some(alias) if names.len() == 1 => (
-                        format!("the standard library brings its modules, it cannot be called `{}`", alias.text),
-                        Some(Help::say("write `use std`, and `rails.UIC60` for what is in its module `rails`")),
+                        format!(
+                            "`use std` brings in the modules of the standard library; it cannot be renamed to `{}`",
+                            alias.text
+                        ),
+                        Some(Help::say(
+                            "write `use std`, and for example `rails.UIC60` for an entry of its module `rails`",
+                        )),
                     ),
                     _ if names.len() == 3 => (
-                        format!("`{}` is no module: a module is used whole", names.join(".")),
+                        format!("`{}` is not a module: a module is used as a whole", names.join(".")),
                         Some(Help {
-                            said: format!("write `use std`, and `{}` where it is wanted", names[1..].join(".")),
+                            said: format!("write `use std`, and `{}` at the place of use", names[1..].join(".")),
                             writes: vec!["std".to_owned()],
                         }),
                     ),
@@ -250,7 +255,7 @@ impl<'a> Loader<'a> {
         } else {
             self.file(&names, used.path.span)
         };
-        // nobody else calls a file so: what stands in the library is not missed a second time
+        // no other file has such a name: entries of the library are not reported as missing again
         let of_library = library::MODULES.iter().any(|(module, _)| *module == names[0]);
         if scope.is_none() && names[0] != "std" && (is_library(names[0]) || of_library) {
             brought.broken.extend(library::MODULES.iter().map(|(module, _)| module.to_string()));
@@ -294,7 +299,7 @@ impl<'a> Loader<'a> {
                     }
                 };
                 let help = format!(
-                    "the circle is {} -> {relative}; move what several of them need into a file of its own",
+                    "the circle is {} -> {relative}; move the common parts into a file of their own",
                     circle.join(" -> ")
                 );
                 self.diagnostics
@@ -362,7 +367,7 @@ impl<'a> Loader<'a> {
         names
     }
 
-    /// At most one of the kinds of which a scene has one; traffic or load, not both.
+    /// Checks that a scene has at most one object of each single kind, and traffic or load, not both.
     fn exclusive(&mut self, tree: &Tree) {
         let mut first: BTreeMap<&str, &Declaration> = BTreeMap::new();
         for item in &tree.items {

@@ -12,8 +12,8 @@ pub struct MeasuredCurve {
     pub settlement: Vec<f64>,
 }
 
-/// Reads columns `axles` and `settlement_UNIT`; others are left alone. At least `least` measurements are needed. Without a curve
-/// there is at least one diagnostic.
+/// Reads columns `axles` and `settlement_UNIT`; other columns are ignored. At least `least` measurements are needed.
+/// Without a curve there is at least one diagnostic.
 pub fn measured_curve(file: FileId, text: &str, least: usize) -> (Option<MeasuredCurve>, Vec<Diagnostic>) {
     let mut reader = Reader { file, diagnostics: Vec::new() };
     let mut lines = lines(text).filter(|line| !line.text.trim().is_empty() && !line.text.trim_start().starts_with('#'));
@@ -34,7 +34,7 @@ pub fn measured_curve(file: FileId, text: &str, least: usize) -> (Option<Measure
         let cells = line.cells(separator);
         if cells.len() != names.len() {
             let found = format!("expected {} columns, found {}", names.len(), cells.len());
-            let help = "a decimal comma makes a column of its own: write a point";
+            let help = "a decimal comma makes an additional column: write a decimal point";
             reader.refuse_with(&found, line.span(file), "this line", help);
             continue;
         }
@@ -49,10 +49,10 @@ pub fn measured_curve(file: FileId, text: &str, least: usize) -> (Option<Measure
         }
         match (count, value) {
             (Some(0), Some(value)) if value != 0.0 => reader.refuse_with(
-                "no axle has passed and something has settled",
+                "the settlement before the first axle is not 0",
                 cells[settlement].span(file),
                 "before the first axle",
-                "give settlement from the start of the count on, so that it begins with 0",
+                "give the settlement since the start of the count, so that it begins with 0",
             ),
             (Some(count), Some(value)) if count > 0 => {
                 curve.axles.push(count);
@@ -69,7 +69,7 @@ pub fn measured_curve(file: FileId, text: &str, least: usize) -> (Option<Measure
     (Some(curve).filter(|_| reader.diagnostics.is_empty()), reader.diagnostics)
 }
 
-/// A piece of the text with the byte where it begins.
+/// A piece of the text with the offset of its first byte.
 #[derive(Clone, Copy)]
 struct Piece<'a> {
     text: &'a str,
@@ -162,7 +162,8 @@ impl Reader {
                 } else {
                     cell.span(self.file)
                 };
-                self.diagnostics.push(Diagnostic::new(Code::E0805, mistake).label(place, "no number").maybe_help(help));
+                self.diagnostics
+                    .push(Diagnostic::new(Code::E0805, mistake).label(place, "not a number").maybe_help(help));
                 None
             }
         }
@@ -172,7 +173,7 @@ impl Reader {
         let value = self.number(cell)?;
         if value < 0.0 || value.fract() != 0.0 || value > 1e15 {
             let mistake = format!("expected a whole number of axles, found {}", number(value));
-            self.refuse(&mistake, cell.span(self.file), "no count");
+            self.refuse(&mistake, cell.span(self.file), "not a count");
             return None;
         }
         Some(value as u64)
@@ -244,7 +245,7 @@ mod tests {
         assert_eq!(one("")[0].0, "the file holds no measurement");
         assert_eq!(one("axles,settlement_mm\n1,1\n2,2\n")[0].0, "2 measurements are too few, at least 3 are needed");
         assert_eq!(one("axles;settlement_mm\n1;0,5\n")[0].0, "expected a number, found `0,5`");
-        assert_eq!(one("axles,settlement_mm\n0,1\n")[0].0, "no axle has passed and something has settled");
+        assert_eq!(one("axles,settlement_mm\n0,1\n")[0].0, "the settlement before the first axle is not 0");
     }
 
     proptest::proptest! {

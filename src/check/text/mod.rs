@@ -1,4 +1,4 @@
-//! What a check reads: the scene and its modules, the standard library, data files.
+//! The files of a check: the scene and its modules, the standard library, data files.
 
 pub mod files;
 mod headers;

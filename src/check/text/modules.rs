@@ -1,4 +1,4 @@
-//! Where the files of a scene come from: a folder, memory, or a memory of what was parsed before.
+//! Sources of the files of a scene: a folder, memory, or a cache of parsed files.
 
 use crate::diag::{Diagnostic, FileId};
 use crate::syntax::parse;
@@ -9,24 +9,24 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Where `use site.gravel` finds `site/gravel.track`, and `file("level.csv")` its numbers.
+/// The source in which `use site.gravel` finds `site/gravel.track`, and `file("level.csv")` its numbers.
 pub trait Modules {
-    /// The bytes of a file below the main file's folder; `None` where there is none.
+    /// The bytes of a file below the main file's folder; `None` if there is none.
     fn read(&self, relative: &Path) -> Option<Vec<u8>>;
 
-    /// The same, with the reason where it is not read. `relative` has plain names only, no `..`; what a link makes of them is for
-    /// the implementation to refuse.
+    /// The same, with the reason if it is not read. `relative` has plain names only, no `..`; the implementation must
+    /// refuse links that leave the folder.
     fn data(&self, relative: &Path) -> Result<Vec<u8>, DataError> {
         self.read(relative).ok_or(DataError::Missing)
     }
 
-    /// The tree of a text that is this file of the sources.
+    /// The tree of a text, which is this file of the sources.
     fn parsed(&self, file: FileId, text: &str) -> Parsed {
         Parsed::new(file, text)
     }
 }
 
-/// A file's tree, and all that is wrong with its text.
+/// A file's tree, and all mistakes of its text.
 #[derive(Debug, Clone)]
 pub struct Parsed {
     pub tree: Arc<Tree>,
@@ -49,17 +49,17 @@ pub enum DataError {
     Outside,
     /// Its size in bytes is above [`LARGEST_DATA_FILE`].
     TooLarge(u64),
-    /// What the system says.
+    /// The message of the operating system.
     Unreadable(String),
 }
 
-/// Bytes of a file that a scene reads, at most.
+/// Largest size of a file that a scene reads, bytes.
 pub const LARGEST_DATA_FILE: u64 = 8 << 20;
 
-/// Bytes read of a file that is named on the command line, at most: a pipe or a device may have no end.
+/// Largest number of bytes read from a file on the command line: a pipe or a device may have no end.
 const ENDLESS: u64 = 8 * LARGEST_DATA_FILE;
 
-/// The bytes of a file or a pipe; fails above 64 MiB, and where the operating system refuses.
+/// The bytes of a file or a pipe; fails above 64 MiB, and if the operating system refuses.
 pub fn read_bounded(path: &Path) -> io::Result<Vec<u8>> {
     read_all(File::open(path)?)
 }
@@ -104,7 +104,7 @@ impl Modules for Folder {
     }
 }
 
-/// Modules of a scene that is compiled again and again, as the points of a study are: no text is parsed twice.
+/// Modules of a scene that is compiled many times, such as the points of a study: no text is parsed twice.
 pub struct Remembered<M> {
     modules: M,
     trees: Mutex<HashMap<(FileId, String), Parsed>>,
@@ -127,7 +127,7 @@ impl<M: Modules> Modules for Remembered<M> {
 
     fn parsed(&self, file: FileId, text: &str) -> Parsed {
         let key = (file, text.to_string());
-        // a panic elsewhere leaves the map whole: trees are put into it finished
+        // a panic elsewhere does not damage the map, because only finished trees are put into it
         let known = self.trees.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
         known.unwrap_or_else(|| {
             let parsed = Parsed::new(file, text);
@@ -137,7 +137,7 @@ impl<M: Modules> Modules for Remembered<M> {
     }
 }
 
-/// No modules but the standard library, for scenes that stand in memory.
+/// No modules except the standard library, for scenes in memory.
 pub struct NoModules;
 
 impl Modules for NoModules {

@@ -1,4 +1,4 @@
-//! `--set path=value`: acts as if that line of the main file had been edited, before anything is checked.
+//! `--set path=value`: edits that line of the main file before the check.
 
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, Sources, Span};
@@ -7,7 +7,7 @@ use crate::syntax::parse;
 use crate::syntax::tree::{Argument, Declaration, Field, Item, Name, Path, Tree, Value, ValueKind};
 use serde::{Deserialize, Serialize};
 
-/// The name of a text that stands for an edited line.
+/// The name of the text of an edited line.
 pub const EDIT: &str = "--set";
 
 /// One override: a path and the text of a value.
@@ -32,7 +32,7 @@ impl Override {
 /// Edits the tree of the main file.
 pub fn apply(sources: &mut Sources, diagnostics: &mut Vec<Diagnostic>, tree: &mut Tree, overrides: &[Override]) {
     for wanted in overrides {
-        // read as a binding of the same length, shown as the path that it sets
+        // read as a binding of the same length, shown with the path that it sets
         let text = format!("let {} = {}", wanted.path.replace('.', "_"), wanted.value);
         let shown = format!("    {} = {}", wanted.path, wanted.value);
         let file = sources.add(EDIT, shown.as_str(), false);
@@ -87,7 +87,7 @@ fn edit(tree: &mut Tree, names: &[Name], value: &Value, span: Span) -> Result<()
         ))
 }
 
-/// The fields of the declaration of a kind of which a scene has one, whatever it is called; one is added where there is none.
+/// The fields of the declaration of a single kind, under any name; a declaration is added if there is none.
 fn scene_kind<'t>(tree: &'t mut Tree, kind: &Name) -> Option<&'t mut Vec<Field>> {
     let role = schema::kind(&kind.text)?.role;
     if role != (Role::Scene { once: true }) || !matches!(kind.text.as_str(), "solve" | "scenario") {
@@ -112,11 +112,11 @@ fn scene_kind<'t>(tree: &'t mut Tree, kind: &Name) -> Option<&'t mut Vec<Field>>
     }
 }
 
-/// Replaces what stands at a path of a block, or adds a line for it.
+/// Replaces the value at a path of a block, or adds a line for it.
 fn set(fields: &mut Vec<Field>, names: &[Name], value: &Value, span: Span) {
     let path_of = |f: &Field| f.path.names.iter().map(|n| n.text.clone()).collect::<Vec<_>>();
     let wanted: Vec<String> = names.iter().map(|n| n.text.clone()).collect();
-    // a longer path inside what is replaced goes with it
+    // longer paths inside a replaced field are removed with it
     fields.retain(|f| !(path_of(f).starts_with(&wanted) && path_of(f).len() > wanted.len()));
     if let Some(field) = fields.iter_mut().find(|f| path_of(f) == wanted) {
         field.value = value.clone();
@@ -131,7 +131,7 @@ fn set(fields: &mut Vec<Field>, names: &[Name], value: &Value, span: Span) {
     fields.push(Field { path: Path { names: names.to_vec(), span }, value: value.clone(), docs: Vec::new(), span });
 }
 
-/// Replaces inside a value: in an object, an extension of what a path names, or an argument of a word.
+/// Replaces inside a value: in an object, in an extension of a named object, or in an argument of a word.
 fn inside(target: &mut Value, rest: &[Name], value: &Value, span: Span) -> bool {
     match &mut target.kind {
         ValueKind::Object { fields, .. } => {

@@ -18,7 +18,7 @@ pub struct Scope {
     /// Declarations and lets by name: indices of items.
     pub names: BTreeMap<String, usize>,
     pub modules: BTreeMap<String, ScopeId>,
-    /// Modules that could not be brought in: what is named in them is not reported again.
+    /// Modules that could not be loaded: their entries are not reported as unknown.
     pub broken: BTreeSet<String>,
 }
 

@@ -1,5 +1,5 @@
-//! Data files: numbers in columns, comma separated, each column with its unit in the header (`x_m,level_mm`). Every mistake
-//! of a file is told at its line and column.
+//! Data files: numbers in columns, comma separated, each column with its unit in the header (`x_m,level_mm`). Every
+//! mistake of a file is reported at its line and column.
 
 use crate::diag::{Code, Diagnostic, FileId, Span};
 use crate::units::{Unit, parse_unit};
@@ -27,18 +27,18 @@ pub struct Cell {
     pub span: Span,
 }
 
-/// Mistakes of one file that are told; beyond them their number.
+/// Number of mistakes of one file that are reported; further mistakes are counted.
 const MOST_MISTAKES: usize = 20;
 
 impl Table {
-    /// Reads the text of a file, with its mistakes: the first of them, and in the last how many more there are.
+    /// Reads the text of a file, with its first mistakes; the last one gives the number of further mistakes.
     pub fn read(file: FileId, name: &str, text: &str) -> (Option<Table>, Vec<Diagnostic>) {
         let mut reader = Reader { file, mistakes: Vec::new() };
         let table = reader.table(text);
         let beyond = reader.mistakes.len().saturating_sub(MOST_MISTAKES);
         reader.mistakes.truncate(MOST_MISTAKES);
         if let Some(last) = reader.mistakes.last_mut().filter(|_| beyond > 0) {
-            last.help = Some(format!("{beyond} further rows of `{name}` cannot be read either"));
+            last.help = Some(format!("{beyond} further rows of `{name}` cannot be read"));
         }
         (table, reader.mistakes)
     }
@@ -74,7 +74,7 @@ impl Reader {
         };
         let header = Span::new(self.file, start, start + line.trim_end().len());
         if line.contains(';') {
-            let message = "columns are separated by commas, and numbers have a decimal point";
+            let message = "separate columns by commas, and write numbers with a decimal point";
             self.mistakes.push(Diagnostic::new(Code::E0509, message).label(header, "separated by semicolons"));
             return None;
         }
@@ -93,8 +93,8 @@ impl Reader {
         let Some((name, unit)) = text.rsplit_once('_').filter(|(name, unit)| !name.is_empty() && !unit.is_empty())
         else {
             self.mistakes.push(
-                Diagnostic::new(Code::E0509, format!("column `{text}` does not say its unit"))
-                    .label(span, "name, `_` and unit are wanted")
+                Diagnostic::new(Code::E0509, format!("column `{text}` has no unit"))
+                    .label(span, "expected name, `_` and unit")
                     .help("write the unit after the name, such as `x_m` or `level_mm`"),
             );
             return None;
@@ -116,7 +116,7 @@ impl Reader {
         if found != columns.len() {
             let span = Span::new(self.file, start, start + line.trim_end().len());
             let message = format!("expected {} numbers in this row, found {found}", columns.len());
-            self.mistakes.push(Diagnostic::new(Code::E0510, message).label(span, "as many as columns are wanted"));
+            self.mistakes.push(Diagnostic::new(Code::E0510, message).label(span, "expected one number per column"));
             return;
         }
         for ((at, text), column) in cells(start, line).zip(columns) {
@@ -124,7 +124,7 @@ impl Reader {
             match text.parse::<f64>().ok().map(|value| value * column.unit.factor).filter(|value| value.is_finite()) {
                 Some(value) => into.push(Cell { value, span }),
                 None => {
-                    // the row keeps its length, the table is dropped
+                    // the row keeps its length; the table is dropped later
                     into.push(Cell { value: 0.0, span });
                     let message = format!("expected a number, found `{text}`");
                     self.mistakes.push(Diagnostic::new(Code::E0510, message).label(span, "not a number"));

@@ -1,5 +1,5 @@
-//! Designs: where the points of a study lie. Points are chosen in the unit cube, one direction a value that varies, and
-//! each direction is then read as the values of its axis. A seed gives the same design on every machine.
+//! Designs: the points of a study. Points are chosen in the unit cube, with one direction per varied value. Each
+//! direction is then converted to the values of its axis. A seed gives the same design on every machine.
 
 mod latin;
 mod normal;
@@ -16,9 +16,9 @@ use crate::units::number;
 /// A value at a point of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
-    /// The value as it would stand in the file.
+    /// The value as text for the file.
     pub text: String,
-    /// In the unit of the axis; `None` where it is no number.
+    /// In the unit of the axis; `None` if it is not a number.
     pub number: Option<f64>,
     /// Index into the list of the axis.
     pub choice: Option<usize>,
@@ -35,7 +35,7 @@ pub fn design(study: &Study, seed: u64) -> Vec<Vec<Level>> {
     cube.iter().map(|point| axes.iter().zip(point).map(|(axis, u)| level(axis, *u)).collect()).collect()
 }
 
-/// Every combination of the lists, the last axis running fastest.
+/// Every combination of the lists; the last axis changes first.
 fn grid(axes: &[Axis]) -> Vec<Vec<Level>> {
     axes.iter().fold(vec![Vec::new()], |points, axis| {
         let levels = levels(axis);
@@ -68,7 +68,7 @@ fn level(axis: &Axis, u: f64) -> Level {
         Values::Spread(Spread::Normal { mean, deviation }) => mean + deviation * inverse_normal(u),
         Values::Spread(Spread::LogNormal { median, sigma }) => median * (sigma * inverse_normal(u)).exp(),
     };
-    // six digits are what a person would write, and what the point is run with
+    // the point is run with six digits, as a person would write them
     let text = format!("{} {}", number(x), axis.unit).trim_end().to_string();
     Level { text, number: number(x).parse().ok(), choice: None }
 }

@@ -1,7 +1,7 @@
 //! Quantiles of the normal distribution.
 
-/// The value that a standard normal variable stays below with probability `p`, 0 < p < 1, to about 1e-15 of itself:
-/// Wichura (1988), Algorithm AS 241, Applied Statistics 37, 477-484.
+/// The quantile of the standard normal distribution for probability `p`, 0 < p < 1, with a relative error of about
+/// 1e-15: Wichura (1988), Algorithm AS 241, Applied Statistics 37, 477-484.
 pub fn inverse_normal(p: f64) -> f64 {
     let q = p - 0.5;
     if q.abs() <= 0.425 {

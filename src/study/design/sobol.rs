@@ -7,8 +7,8 @@ pub const SOBOL_DIMENSIONS: usize = 21;
 
 const BITS: usize = 32;
 
-/// Primitive polynomials (the bits between the first and the last coefficient) and first direction numbers of directions
-/// 2 to 21: Joe and Kuo (2008), SIAM Journal on Scientific Computing 30, 2635-2654, table `new-joe-kuo-6`.
+/// Primitive polynomials (the bits between the first and the last coefficient) and first direction numbers of
+/// directions 2 to 21: Joe and Kuo (2008), SIAM Journal on Scientific Computing 30, 2635-2654, table `new-joe-kuo-6`.
 const TABLE: [(u32, &[u32]); SOBOL_DIMENSIONS - 1] = [
     (0, &[1]),
     (1, &[1, 3]),
@@ -32,8 +32,8 @@ const TABLE: [(u32, &[u32]); SOBOL_DIMENSIONS - 1] = [
     (4, &[1, 3, 7, 13, 13, 15, 69]),
 ];
 
-/// The first `n` points in `d` directions, at most [`SOBOL_DIMENSIONS`]. The shift that `seed` chooses moves no point out of
-/// the box that it has to itself, and takes the first point away from the corner.
+/// The first `n` points in `d` directions, at most [`SOBOL_DIMENSIONS`]. The shift by `seed` keeps every point inside
+/// its own box, and moves the first point away from the corner.
 pub fn sobol(n: usize, d: usize, seed: u64) -> Vec<Vec<f64>> {
     let mut random = SplitMix::new(seed);
     let directions: Vec<([u32; BITS], u32)> =
