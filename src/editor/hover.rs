@@ -76,7 +76,7 @@ pub fn form_and_need(field: &Field) -> String {
 pub fn field_meaning(field: &Field) -> String {
     let words = field.form.words().into_iter().filter(|word| !word.planned && !word.doc.is_empty());
     let words: Vec<String> = words.map(|word| format!("- `{}`: {}", word.name, word.doc)).collect();
-    let unread = if field.unread { "no run of this version reads it yet" } else { "" };
+    let unread = if field.unread { "not used by this version" } else { "" };
     paragraphs([field.doc.to_owned(), words.join("\n"), unread.to_owned()])
 }
 
