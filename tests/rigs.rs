@@ -280,11 +280,11 @@ fn sides_give_way_only_under_a_plate() {
     assert_eq!(found(&triaxial()), []);
     let on_sleepers = SCENE.replace("total = 4 cycles", "total = 4 cycles, confinement = 60 kPa");
     let [(Code::E0611, message)] = &found(&on_sleepers)[..] else { panic!("{:?}", found(&on_sleepers)) };
-    assert!(message.contains("`confinement` is of a specimen under a plate"), "{message}");
+    assert!(message.contains("`confinement` is only for a specimen under a plate"), "{message}");
     // a plate needs a bed under it, which only grains make
     let by_law = triaxial().replace("substructure = full", "substructure = law");
     let [(Code::E0611, message)] = &found(&by_law)[..] else { panic!("{:?}", found(&by_law)) };
-    assert!(message.contains("presses on a bed of grains, and nothing of this scene asks for one"), "{message}");
+    assert!(message.contains("acts on a bed of grains, but this scene does not ask for a bed"), "{message}");
     // a plate is loaded or driven, not both
     let both = triaxial().replace("strain = 4 %", "strain = 4 %, force = 10 kN per rail");
     assert!(matches!(found(&both)[..], [(Code::E0404, _)]), "{:?}", found(&both));

@@ -1,5 +1,5 @@
-//! Names that engineers use in formulas, in other programs, in other languages and in speech, each with its name here. A
-//! foreign name may have several entries: the first entry whose name is known in that context is taken.
+//! Names that engineers use in formulas, in other programs, in other languages and in speech, each with its name here.
+//! A foreign name may have several entries: the first entry whose name is known in that context is taken.
 
 type Called = &'static [(&'static str, &'static str)];
 
