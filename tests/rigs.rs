@@ -220,8 +220,8 @@ fn what_no_rig_has_is_refused_by_the_check() {
     let second = "4 cycles }\nload other { on = sleepers, at = 1 sleeper, force = 3 kN per sleeper }";
     for (from, to, expected) in [
         ("4 cycles }", second, "both act on sleeper +1"),
-        ("sections = [bed: 1 sleeper]", "sections = [bed: 1 sleeper, other: 1 sleeper]", "stands on one bed"),
-        ("spacing = 0.6 m", "spacing = 0.3 m", "a bed under them needs a gap"),
+        ("sections = [bed: 1 sleeper]", "sections = [bed: 1 sleeper, other: 1 sleeper]", "a test rig has one bed"),
+        ("spacing = 0.6 m", "spacing = 0.3 m", "a test rig needs a gap between sleepers"),
     ] {
         let from_bed = "trackform other : bed { layers.stone = 200 mm }\ntrack box";
         let text = SCENE.replace(from, to);
