@@ -97,7 +97,7 @@ pub fn signature(word: &Word) -> String {
 /// Description of a word, with its arguments.
 pub fn word_meaning(word: &Word) -> String {
     let arguments: Vec<String> =
-        word.arguments.iter().map(|a| format!("- `{}`: {} {}", a.name, form_and_need(a), a.doc)).collect();
+        word.arguments.iter().map(|a| format!("- `{}` ({}): {}", a.name, form_and_need(a), a.doc)).collect();
     paragraphs([word.doc.to_owned(), arguments.join("\n"), String::new()])
 }
 

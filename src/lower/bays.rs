@@ -1,7 +1,8 @@
 //! Bays of a window that get grains in the tier `zone`: the bays in which the track differs from the far field, and an
-//! edge of bays beside them whose settlement the springs beyond take over. A settlement law shows where the forces
-//! differ. Beside a transition the grains differ over a longer distance: sleepers hang, and grains under the next
-//! sleepers move towards the unloaded grains. A settlement law of a single sleeper does not describe this.
+//! edge of a few bays beside them. The springs beyond settle like the sleepers on this edge. A settlement law shows
+//! where the forces differ. Beside a transition the grains differ over a longer distance: sleepers hang, and grains
+//! under the next sleepers move towards the unloaded grains. A settlement law of a single sleeper does not describe
+//! this.
 
 use super::{Draft, Pass};
 use crate::scenario::{Scenario, Tier};

@@ -36,7 +36,7 @@ pub static RANDOM: Word = Word {
                 word("log_normal", "always positive; the logarithm of the value is normally distributed"),
             ]),
             "normal",
-            "",
+            "distribution of the value",
         ),
         optional(
             "seed",
