@@ -79,7 +79,10 @@ fn without_a_crib_a_plan_says_nothing_of_it_and_with_one_it_costs_more() {
     let back: Graph = serde_json::from_str(&json(&with)).unwrap();
     assert_eq!(back, with);
     let text = with.listing().text();
-    assert!(text.contains("between the sleepers, up to 150 mm above the underside of the sleepers, and 300 mm"), "{text}");
+    assert!(
+        text.contains("between the sleepers, up to 150 mm above the underside of the sleepers, and 300 mm"),
+        "{text}"
+    );
     assert!(without.listing().text().contains("there are no grains beside or between the sleepers"));
     assert!(with.cost.seconds > 1.1 * without.cost.seconds && with.cost.bytes > without.cost.bytes);
 }
