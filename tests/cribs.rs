@@ -79,8 +79,11 @@ fn without_a_crib_a_plan_says_nothing_of_it_and_with_one_it_costs_more() {
     let back: Graph = serde_json::from_str(&json(&with)).unwrap();
     assert_eq!(back, with);
     let text = with.listing().text();
-    assert!(text.contains("between the sleepers up to 150 mm above their underside, and 300 mm beyond"), "{text}");
-    assert!(without.listing().text().contains("nothing lies beside or between the sleepers"));
+    assert!(
+        text.contains("between the sleepers, up to 150 mm above the underside of the sleepers, and 300 mm"),
+        "{text}"
+    );
+    assert!(without.listing().text().contains("there are no grains beside or between the sleepers"));
     assert!(with.cost.seconds > 1.1 * without.cost.seconds && with.cost.bytes > without.cost.bytes);
 }
 
@@ -98,12 +101,12 @@ fn what_cannot_be_is_told_with_a_way_out() {
     refused(&rig(", crib = 5 mm", ""), Code::E0405, "10 .. 500 mm", "");
     refused(&rig(", crib = 5 kN", ""), Code::E0302, "a length in `mm`", "");
     let tight = rig(", crib = 150 mm", "").replace("spacing = 0.6 m", "spacing = 0.35 m");
-    refused(&tight, Code::E0610, "up to 65 mm wide, and the sleepers leave 50 mm", "wider `spacing`");
+    refused(&tight, Code::E0610, "up to 65 mm wide, and the gap between the sleepers is 50 mm", "larger `spacing`");
     let pressed = rig(", crib = 150 mm", "").replace(
         "on = sleepers, at = 1 sleeper, force = cyclic(5 .. 60 kN, 40 Hz) per sleeper",
         "on = bed, at = 0.3 m, force = cyclic(5 .. 60 kN, 40 Hz) per rail",
     );
-    refused(&pressed, Code::E0611, "leaves no `crib` to fill", "`crib = none`");
+    refused(&pressed, Code::E0611, "there is no `crib` to fill", "`crib = none`");
 }
 
 /// A track on stated supports, on a slab behind its transition.

@@ -267,7 +267,7 @@ fn what_the_ground_cannot_be_is_refused_once() {
             Code::E0405,
             "5 .. 60",
         ),
-        ("", "top: 0 m, fill: 0 m", String::new(), Code::E0407, "carry no sleeper at seat -70"),
+        ("", "top: 0 m, fill: 0 m", String::new(), Code::E0407, "cannot carry the sleeper at seat -70"),
     ];
     for (before, under, stretches, code, message) in cases {
         let mut text = embankment(before, under, stretches);

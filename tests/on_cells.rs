@@ -115,7 +115,7 @@ fn vehicles_that_would_ride_over_cells_are_told_where_the_scene_asks_for_cells()
     let text = SCENE.replace("cells,", "cells, coupling = monolithic,");
     let compiled = compile("scene.track", &text, &NoModules, &[]);
     let told: Vec<_> = compiled.diagnostics.iter().filter(|d| d.code == Code::E0604).collect();
-    assert!(told.len() == 1 && told[0].message.contains("no rail joins the cells"), "{told:?}");
+    assert!(told.len() == 1 && told[0].message.contains("the rail does not connect the cells"), "{told:?}");
     assert_eq!(compiled.sources.text(told[0].labels[0].span), "cells");
     assert!(compiled.runnable().is_none());
 }
@@ -178,5 +178,5 @@ fn glued_grains_get_cells_of_their_own_and_other_grains_are_refused() {
     assert_eq!(cells.beds.len(), 1, "glued or not, the grains are packed once");
     let compiled = compile("scene.track", &stretch("glued: 150 mm"), &NoModules, &[]);
     let told = compiled.diagnostics.iter().find(|d| d.code == Code::E0604).expect("told");
-    assert!(told.message.contains("other layers of grains"), "{}", told.message);
+    assert!(told.message.contains("the layers of grains differ"), "{}", told.message);
 }

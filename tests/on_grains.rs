@@ -11,7 +11,8 @@ use trackbed::nodes::Bonds;
 use trackbed::results::RunRecorder;
 use trackbed::store::{Beds, Directory, Mode, Work};
 
-/// Coarse spheres on soft soil under three sleepers before a slab, one wagon after the other: seconds to pack and minutes for nobody.
+/// Coarse spheres on soft soil under three sleepers before a slab, one wagon after the other: seconds to pack and
+/// minutes for nobody.
 const SCENE: &str = "use std
 grading coarse { passing = [50 mm: 0 %, 65 mm: 100 %] }
 granular stone {
@@ -149,7 +150,8 @@ fn stopped_and_resumed(graph: &Graph, beds: &std::path::Path, stop: (usize, u32)
     assert_eq!([begun.at_rest, resumed.at_rest].concat(), whole.at_rest, "{stop:?}");
 }
 
-/// A recorder that kept the state under a recorded train, and another process that goes on with it, make the tables of a whole run.
+/// A recorder that kept the state under a recorded train, and another process that goes on with it, make the tables of
+/// a whole run.
 fn tables_of_a_run_that_was_stopped(text: &str, beds: &std::path::Path) {
     let compiled = compile("scene.track", text, &NoModules, &[]);
     let (scenario, graph) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
@@ -268,7 +270,8 @@ fn vehicles_ride_on_the_rail_over_the_grains() {
         assert!(after[*seat] < 1.5 * before[*seat], "seat {seat}: {:.0} and {:.0} N", before[*seat], after[*seat]);
     }
     let loads = &ridden.seat_loads[0];
-    // vehicles come onto the rail as if it went on: only the two seats at its end feel that the track beyond is another model
+    // vehicles come onto the rail as if it went on: only the two seats at its end feel that the track beyond is another
+    // model
     assert_eq!(ridden.seat_loads.len(), 2, "before the axles and after");
     for (far, when) in ridden.seat_loads.iter().map(|loads| &loads[..15]).zip(["before", "after"]) {
         for (seat, load) in far.iter().enumerate() {
@@ -364,7 +367,7 @@ fn layers_along_the_track_lie_in_the_soil_below_the_grains() {
     let other = text.replace("layers = [stone: 200 mm, mortar", "layers = [stone: 150 mm, mortar");
     let compiled = compile("scene.track", &other, &NoModules, &[]);
     let told = compiled.diagnostics.iter().find(|d| d.code == Code::E0604).expect("told");
-    assert!(told.message.contains("other layers of grains"), "{}", told.message);
+    assert!(told.message.contains("the layers of grains differ"), "{}", told.message);
 }
 
 #[test]
@@ -479,9 +482,9 @@ fn what_grains_under_a_track_cannot_run_is_told() {
         assert!(told.len() == 1 && told[0].1.contains(part), "{to}: {told:?}");
     };
     one("support_from = passage", "symmetry = full", "both rails");
-    one("track line { ", "track line { base = quiet, ", "lets the soil sink");
+    one("track line { ", "track line { base = quiet, ", "lets the soil under grains sink");
     one("window = -1.8 .. 1.2 m", "window = 3 .. 6 m", "fewer than 2 sleepers");
-    one("substructure = full", "substructure = cells, coupling = monolithic", "no rail joins the cells");
+    one("substructure = full", "substructure = cells, coupling = monolithic", "the rail does not connect the cells");
 }
 
 #[test]

@@ -113,7 +113,7 @@ fn what_cannot_be_packed_is_refused_before_anything_runs() {
     fs::write(&scene, SCENE).unwrap();
     let output = pack(&scene, &["--set", "stone.contact=hertz(50 GPa, 0.2)", "--fresh"], "2");
     assert!(!output.status.success() && said(&output).contains("E0610"), "{}", said(&output));
-    assert!(said(&output).contains("meet after Hertz"), "{}", said(&output));
+    assert!(said(&output).contains("have `contact = hertz`"), "{}", said(&output));
     let output = pack(&scene, &["--section", "bde", "--fresh"], "2");
     assert!(said(&output).contains("no bed of its own") && said(&output).contains("`bed`"), "{}", said(&output));
     let output = pack(Path::new("scenarios/transition.track"), &["--fresh"], "2");

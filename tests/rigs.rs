@@ -220,8 +220,8 @@ fn what_no_rig_has_is_refused_by_the_check() {
     let second = "4 cycles }\nload other { on = sleepers, at = 1 sleeper, force = 3 kN per sleeper }";
     for (from, to, expected) in [
         ("4 cycles }", second, "both act on sleeper +1"),
-        ("sections = [bed: 1 sleeper]", "sections = [bed: 1 sleeper, other: 1 sleeper]", "stands on one bed"),
-        ("spacing = 0.6 m", "spacing = 0.3 m", "a bed under them needs a gap"),
+        ("sections = [bed: 1 sleeper]", "sections = [bed: 1 sleeper, other: 1 sleeper]", "a test rig has one bed"),
+        ("spacing = 0.6 m", "spacing = 0.3 m", "a test rig needs a gap between sleepers"),
     ] {
         let from_bed = "trackform other : bed { layers.stone = 200 mm }\ntrack box";
         let text = SCENE.replace(from, to);
@@ -280,11 +280,11 @@ fn sides_give_way_only_under_a_plate() {
     assert_eq!(found(&triaxial()), []);
     let on_sleepers = SCENE.replace("total = 4 cycles", "total = 4 cycles, confinement = 60 kPa");
     let [(Code::E0611, message)] = &found(&on_sleepers)[..] else { panic!("{:?}", found(&on_sleepers)) };
-    assert!(message.contains("`confinement` is of a specimen under a plate"), "{message}");
+    assert!(message.contains("`confinement` is only for a specimen under a plate"), "{message}");
     // a plate needs a bed under it, which only grains make
     let by_law = triaxial().replace("substructure = full", "substructure = law");
     let [(Code::E0611, message)] = &found(&by_law)[..] else { panic!("{:?}", found(&by_law)) };
-    assert!(message.contains("presses on a bed of grains, and nothing of this scene asks for one"), "{message}");
+    assert!(message.contains("acts on a bed of grains, but this scene does not ask for a bed"), "{message}");
     // a plate is loaded or driven, not both
     let both = triaxial().replace("strain = 4 %", "strain = 4 %, force = 10 kN per rail");
     assert!(matches!(found(&both)[..], [(Code::E0404, _)]), "{:?}", found(&both));

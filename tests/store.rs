@@ -182,7 +182,7 @@ fn two_do_not_work_in_one_directory() {
     let work = Work { name: "run".into(), scene_sha256: "abc".into() };
     let other = Directory::open(&study.out(), work, Mode::New).unwrap();
     for more in [&[][..], &["--resume"], &["--force"]] {
-        fails_with(&study.run(more), "E0802", "another process works in");
+        fails_with(&study.run(more), "E0802", "another process is working in");
     }
     drop(other);
     assert_eq!(study.run(&[]).status.code(), Some(0));

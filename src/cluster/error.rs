@@ -1,4 +1,4 @@
-//! What can go wrong beyond this machine.
+//! Errors of work on other machines.
 
 use super::{Ending, Request};
 use crate::store::StoreError;
@@ -6,7 +6,7 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
-/// A failure to give work to a cluster, or of the work there.
+/// A failure to submit work to a cluster, or a failure of the work there.
 #[derive(Debug)]
 pub enum ClusterError {
     /// A program of the scheduler cannot be started.
@@ -14,24 +14,23 @@ pub enum ClusterError {
         program: &'static str,
         cause: io::Error,
     },
-    /// A program of the scheduler has refused, with its own words.
+    /// A program of the scheduler has refused; `said` is its message.
     Refused {
         program: &'static str,
         said: String,
     },
-    /// No partition takes such a task; the names of those that there are.
+    /// No partition takes the task; `known` are the names of the partitions.
     NoPartition {
         request: Request,
         known: Vec<String>,
     },
-    /// Pieces that have been given as often as is sensible; how many, how the last task has ended, and where it has
-    /// printed what.
+    /// Pieces that have failed too often: their number, the end of the last task, and the folder of its output.
     GivenUp {
         pieces: usize,
         ending: Ending,
         logs: PathBuf,
     },
-    /// A path that cannot stand in a script.
+    /// A path that cannot be used in a script.
     Path {
         path: PathBuf,
     },
@@ -39,28 +38,28 @@ pub enum ClusterError {
 }
 
 impl ClusterError {
-    /// A way out, as a sentence to a person at the command line.
+    /// Help for the user at the command line.
     pub fn help(&self) -> String {
         match self {
             ClusterError::NotHere { .. } => {
-                "run this where Slurm's commands are, or leave out `--executor slurm`".into()
+                "run this on a machine with the Slurm commands, or leave out `--executor slurm`".into()
             }
             ClusterError::Refused { program, .. } if *program != "sbatch" => {
-                format!("see that `{program}` answers on this machine, or leave out `--executor slurm`")
+                format!("check that `{program}` works on this machine, or leave out `--executor slurm`")
             }
             ClusterError::Refused { .. } => {
-                "give what your cluster asks for with `--sbatch`, such as `--sbatch=--account=NAME`; then `--resume`"
+                "add the options that your cluster needs with `--sbatch`, such as `--sbatch=--account=NAME`; then use `--resume`"
                     .into()
             }
             ClusterError::NoPartition { .. } => {
-                "name a partition with `--partition`, or make the points smaller: `trackbed plan` says what one takes"
+                "name a partition with `--partition`, or make the points smaller: `trackbed plan` shows time and memory of a point"
                     .into()
             }
             ClusterError::GivenUp { logs, .. } => {
-                format!("read the last lines of the files in `{}`, then go on with `--resume`", logs.display())
+                format!("read the last lines of the files in `{}`, then continue with `--resume`", logs.display())
             }
             ClusterError::Path { .. } => {
-                "give a directory whose path has no end of a line and no quotation mark".into()
+                "use a directory whose path has no line break, quotation mark, dollar sign, backquote or backslash".into()
             }
             ClusterError::Store(error) => error.help().into(),
         }
@@ -81,7 +80,7 @@ impl fmt::Display for ClusterError {
                 let runs = if *pieces == 1 { "1 run is" } else { &format!("{pieces} runs are") };
                 write!(out, "{runs} missing: the last attempt {}", ending.words())
             }
-            ClusterError::Path { path } => write!(out, "`{}` cannot stand in a script", path.display()),
+            ClusterError::Path { path } => write!(out, "the path `{}` cannot be used in a script", path.display()),
             ClusterError::Store(error) => error.fmt(out),
         }
     }

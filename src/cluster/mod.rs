@@ -1,9 +1,9 @@
-//! Machines beyond this one. Pieces of work are put into tasks ([`tasks`]), tasks are given to a scheduler
-//! ([`Slurm`]) and watched until their pieces are kept ([`Watch`]). What was lost is given again, with more time or
-//! memory where that was missing.
+//! Work on other machines. Pieces of work are put into tasks ([`tasks`]). Tasks are submitted to a scheduler
+//! ([`Slurm`]) and watched until their pieces are kept ([`Watch`]). Lost tasks are submitted again, with more time or
+//! memory if they had too little.
 //!
-//! The scheduler starts `trackbed work`, and pieces come back as files of the directory of results. So nothing
-//! depends on a connection: who watches may stop and go on, on this machine or another one.
+//! The scheduler starts `trackbed work`, and pieces come back as files in the directory of results. No connection is
+//! needed: the watching program may stop and continue, on this machine or on another.
 
 mod error;
 mod need;

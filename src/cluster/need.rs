@@ -1,50 +1,50 @@
-//! What pieces of work take by their plans, and the tasks that are made of them.
+//! Time and memory of pieces of work from their plans, and the tasks made of the pieces.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What a piece of work takes, by its plan.
+/// Time and memory of a piece of work, from its plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Need {
-    /// On one core, s.
+    /// Time on one core, s.
     pub seconds: f64,
     pub bytes: u64,
-    /// Whether it goes on from its last checkpoint where its task is cut off.
+    /// Whether it continues from its last checkpoint if its task is stopped.
     pub goes_on: bool,
 }
 
-/// What a task asks of a scheduler.
+/// Time and memory that a task requests from a scheduler.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Request {
     pub minutes: u64,
-    /// MiB.
+    /// Memory, MiB.
     pub megabytes: u64,
 }
 
-/// Some pieces of work, by their numbers, that one process does in turn.
+/// Pieces of work, by their numbers, that one process does one after the other.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Task {
     pub request: Request,
     pub pieces: Vec<usize>,
 }
 
-/// Short pieces share a task that lasts about so long, s: a scheduler takes up to a second to start one.
+/// Least and largest length of a task of short pieces, s: a scheduler needs up to a second to start a task.
 const LENGTH: [f64; 2] = [5.0, 60.0];
-/// Where there are so many tasks they are made longer: more of them would keep no more machines busy.
+/// With more tasks than this the tasks are made longer, because more tasks would not use more machines.
 const ENOUGH: f64 = 100.0;
-/// Tasks are made longer rather than more than this: schedulers hold some ten thousand jobs.
+/// Largest number of short tasks: schedulers hold about ten thousand jobs.
 const MOST: f64 = 2000.0;
-/// Plans may be wrong by as much.
+/// Factor by which the estimate of a plan may be too low.
 const SLACK: f64 = 2.0;
-/// To start the program and to read the scene, s.
+/// Time to start the program and to read the scene, s.
 const START: f64 = 180.0;
-/// What the program takes beside the plan, MiB.
+/// Memory of the program in addition to the plan, MiB.
 const PROGRAM: u64 = 256;
-/// A machine has hardly less, MiB.
+/// Least memory that a task requests, MiB.
 const LEAST: u64 = 512;
 
 impl Request {
-    /// What a task of some length asks for, in round numbers, so that many tasks ask for the same.
+    /// Request of a task, in round numbers, so that many tasks have the same request.
     fn of_need(need: Need) -> Request {
         let minutes = ((SLACK * need.seconds + START) / 60.0).ceil() as u64;
         let megabytes = PROGRAM + (1.5 * need.bytes as f64 / f64::from(1 << 20)).ceil() as u64;
@@ -53,19 +53,19 @@ impl Request {
         Request { minutes: rounded, megabytes: megabytes.max(LEAST).next_power_of_two() }
     }
 
-    /// Twice the time.
+    /// The request with twice the time.
     #[must_use]
     pub fn longer(self) -> Request {
         Request { minutes: self.minutes * 2, ..self }
     }
 
-    /// The same in no more than some minutes; `None` is no limit.
+    /// The request with at most `longest` minutes; `None` is no limit.
     #[must_use]
     pub fn within(self, longest: Option<u64>) -> Request {
         Request { minutes: longest.map_or(self.minutes, |longest| self.minutes.min(longest)), ..self }
     }
 
-    /// Twice the memory.
+    /// The request with twice the memory.
     #[must_use]
     pub fn larger(self) -> Request {
         Request { megabytes: self.megabytes * 2, ..self }
@@ -73,8 +73,8 @@ impl Request {
 }
 
 impl Task {
-    /// What the task asks for where no task may take longer than `longest`: all of whose pieces go on from a checkpoint is done in
-    /// parts of that length.
+    /// The request of the task if no task may take longer than `longest`. If all its pieces continue from a checkpoint,
+    /// the task is done in parts of this length.
     #[must_use]
     pub fn request_within(&self, needs: &[Need], longest: impl Fn(Request) -> Option<u64>) -> Request {
         match self.pieces.iter().all(|piece| needs[*piece].goes_on) {
@@ -84,8 +84,8 @@ impl Task {
     }
 }
 
-/// Puts pieces into tasks of some seconds to a minute: of equal memory, in their order. A longer piece is a task of
-/// its own.
+/// Puts pieces into tasks of a few seconds to a minute, with equal memory and in their order. A longer piece is a
+/// separate task.
 pub fn tasks(pieces: &[(usize, Need)]) -> Vec<Task> {
     let all: f64 = pieces.iter().map(|(_, need)| need.seconds).sum();
     let length = (all / ENOUGH).clamp(LENGTH[0], LENGTH[1]).max(all / MOST);

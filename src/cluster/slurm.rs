@@ -6,14 +6,14 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-/// Tasks of one array where Slurm does not say: its own default.
+/// Largest array if Slurm gives no limit: the default of Slurm.
 const LARGEST_ARRAY: usize = 1000;
 
 /// A partition of the cluster.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Partition {
     pub name: String,
-    /// Where jobs go that name none.
+    /// Whether jobs without a partition use it.
     pub is_default: bool,
     /// Longest job, minutes; `None` without a limit.
     pub minutes: Option<u64>,
@@ -22,33 +22,33 @@ pub struct Partition {
     pub cores: u64,
 }
 
-/// How tasks are given to Slurm.
+/// Settings for tasks in Slurm.
 #[derive(Debug, Clone)]
 pub struct Slurm {
-    /// What the queue calls them.
+    /// Name of the jobs in the queue.
     pub name: String,
     /// This program.
     pub program: PathBuf,
-    /// The directory of results, which all machines see.
+    /// The directory of results, which all machines can read.
     pub directory: PathBuf,
-    /// Where tasks print, a file each.
+    /// Folder of the output of tasks, one file for each task.
     pub logs: PathBuf,
-    /// The partition that a person has named.
+    /// The partition that the user has named.
     pub partition: Option<String>,
-    /// Those of the cluster; none where they are not known.
+    /// Partitions of the cluster; empty if they are not known.
     pub partitions: Vec<Partition>,
     /// Cores of each task.
     pub cores: u16,
-    /// Tasks of an array at a time.
+    /// Largest number of tasks of an array that run at the same time.
     pub at_a_time: Option<u16>,
     /// Further arguments of `sbatch`.
     pub further: Vec<String>,
-    /// Most tasks of an array.
+    /// Largest number of tasks in an array.
     pub largest_array: usize,
 }
 
 impl Slurm {
-    /// The script of an array. Fails where no partition takes it, or a path cannot stand in a script.
+    /// The script of an array. Fails if no partition takes it or if a path cannot be used in a script.
     pub fn script(&self, array: &Array) -> Result<String, ClusterError> {
         let Request { minutes, megabytes } = array.request;
         let at_a_time = self.at_a_time.map_or(String::new(), |count| format!("%{count}"));
@@ -67,8 +67,8 @@ impl Slurm {
         Ok(format!("#!/bin/sh\n{options}exec {program} work {directory} {number} --threads {}\n", self.cores))
     }
 
-    /// The partition for a request: the one that was named, none where the default takes it, else the one with the
-    /// shortest limit that does.
+    /// The partition for a request: the named partition; `None` if the default partition takes the request; otherwise
+    /// the partition with the shortest limit that takes it.
     fn partition_of(&self, request: Request) -> Result<Option<String>, ClusterError> {
         if self.partition.is_some() || self.partitions.is_empty() {
             return Ok(self.partition.clone());
@@ -90,17 +90,17 @@ impl Slurm {
         partition.megabytes >= request.megabytes && partition.cores >= self.cores.into()
     }
 
-    /// Partitions of the cluster that are up.
+    /// Available partitions of the cluster.
     pub fn partitions() -> Result<Vec<Partition>, ClusterError> {
         let arguments = ["--noheader", "--format=%a|%P|%l|%m|%c"];
         Ok(said("sinfo", Command::new("sinfo").args(arguments).output())?.lines().filter_map(partition).collect())
     }
 
-    /// Most tasks of one array, as the cluster is set up.
+    /// Largest number of tasks in an array, from the configuration of the cluster.
     pub fn array_limit() -> usize {
         let told = said("scontrol", Command::new("scontrol").args(["show", "config"]).output());
         let limit = |line: &str| line.strip_prefix("MaxArraySize")?.trim_start_matches([' ', '=']).trim().parse().ok();
-        // indices end one below it
+        // the largest index is one less
         told.ok()
             .and_then(|text| text.lines().find_map(limit))
             .map_or(LARGEST_ARRAY, |most: usize| most.saturating_sub(1))
@@ -124,7 +124,7 @@ impl Scheduler for Slurm {
             child.wait_with_output()
         });
         let answer = said("sbatch", answer)?;
-        // with the name of the cluster behind a semicolon, where there are several
+        // the name of the cluster follows after a semicolon if there are several clusters
         Ok(answer.trim().split(';').next().unwrap_or_default().to_owned())
     }
 
@@ -145,12 +145,12 @@ impl Scheduler for Slurm {
         };
         let limits: Vec<Option<u64>> =
             self.partitions.iter().filter(asked).map(|partition| partition.minutes).collect();
-        // one without a limit takes any task
+        // a partition without a limit takes any task
         limits.into_iter().collect::<Option<Vec<u64>>>()?.into_iter().max()
     }
 }
 
-/// What a program has printed. Fails where it could not be started, or has failed.
+/// Output of a program. Fails if the program could not be started or has failed.
 fn said(program: &'static str, output: std::io::Result<Output>) -> Result<String, ClusterError> {
     let output = output.map_err(|cause| ClusterError::NotHere { program, cause })?;
     if !output.status.success() {
@@ -182,7 +182,7 @@ fn partition(line: &str) -> Option<Partition> {
     })
 }
 
-/// Whole minutes of `days-hours:minutes:seconds`, from which the front may be missing.
+/// Whole minutes of `days-hours:minutes:seconds`; the first parts may be missing.
 fn minutes(limit: &str) -> Option<u64> {
     let (days, clock) = limit.split_once('-').unwrap_or(("0", limit));
     let parts: Vec<u64> = clock.split(':').map(|part| part.parse().ok()).collect::<Option<_>>()?;

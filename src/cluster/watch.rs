@@ -1,5 +1,5 @@
-//! Gives pieces of work to a scheduler and looks what becomes of them. Whether a piece is done is read off the
-//! directory of results and never off the scheduler, which only says what still runs.
+//! Submits pieces of work to a scheduler and watches them. Only the directory of results shows whether a piece is done;
+//! the scheduler only shows which tasks still run.
 
 use super::{Array, ClusterError, Ending, Need, Request, Scheduler, State, Task, tasks};
 use crate::store::StoreError;
@@ -7,37 +7,37 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
-/// A piece is given so often before it is given up.
+/// Number of attempts before a piece is given up.
 const ATTEMPTS: u32 = 3;
-/// A piece that goes on from its checkpoint is done in so many parts at most, each as long as a task may be.
+/// Largest number of parts of a piece that continues from its checkpoint; each part is as long as a task may be.
 const PARTS: u32 = 100;
 
-/// Work in pieces, by numbers from 0, that processes elsewhere do.
+/// Work in pieces, with numbers from 0, for processes on other machines.
 pub trait Work {
     fn needs(&self) -> &[Need];
 
-    /// Pieces that nobody has done yet.
+    /// Pieces that are not done yet.
     fn missing(&self) -> Result<BTreeSet<usize>, StoreError>;
 
-    /// Keeps what a task of some pieces is, for the process that will do it.
+    /// Stores the pieces of a task for the process that will do it.
     fn put(&self, task: usize, pieces: &[usize]) -> Result<(), StoreError>;
 
-    /// Keeps what has been given, for who goes on watching.
+    /// Stores the ledger, so that another process can continue to watch.
     fn keep(&self, ledger: &Ledger) -> Result<(), StoreError>;
 
-    /// Where tasks print.
+    /// Folder of the output of tasks.
     fn logs(&self) -> PathBuf;
 }
 
-/// What has been given to a scheduler.
+/// Record of the tasks that were submitted to a scheduler.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Ledger {
     jobs: Vec<Job>,
     /// Pieces of every task.
     tasks: Vec<Vec<usize>>,
-    /// How often each piece has been given.
+    /// Number of submissions of each piece.
     attempts: BTreeMap<usize, u32>,
-    /// How often the time of a piece was over that goes on from its checkpoint.
+    /// Number of time-outs of each piece that continues from its checkpoint.
     #[serde(default)]
     parts: BTreeMap<usize, u32>,
 }
@@ -46,29 +46,29 @@ pub struct Ledger {
 struct Job {
     name: String,
     array: Array,
-    /// Places of tasks that are over, and seen to be.
+    /// Indices of tasks that are known to have ended.
     over: BTreeSet<usize>,
 }
 
-/// What a look has found.
+/// Result of a look.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Seen {
     pub missing: usize,
-    /// Tasks.
+    /// Number of running tasks.
     pub running: usize,
     pub waiting: usize,
-    /// Why the first of them waits.
+    /// Reason why the first waiting task waits.
     pub why: String,
-    /// Pieces that were given again in this look, and how their tasks had ended.
+    /// Pieces that were submitted again in this look, with the end of their tasks.
     pub again: Vec<(usize, Ending)>,
 }
 
-/// Work that a scheduler does.
+/// Work in a scheduler.
 pub struct Watch<'a> {
     work: &'a dyn Work,
     scheduler: &'a dyn Scheduler,
     ledger: Ledger,
-    /// Tasks that had ended without all of their pieces when they were seen last: a shared disk may show them later.
+    /// Tasks that had ended without all their pieces at the last look: a shared disk may show the pieces later.
     doubtful: BTreeSet<usize>,
     given_up: BTreeMap<usize, Ending>,
 }
@@ -92,18 +92,18 @@ impl Ledger {
 }
 
 impl<'a> Watch<'a> {
-    /// Goes on from a ledger, or begins with an empty one.
+    /// Continues from a ledger, which may be empty.
     pub fn new(work: &'a dyn Work, scheduler: &'a dyn Scheduler, ledger: Ledger) -> Watch<'a> {
         Watch { work, scheduler, ledger, doubtful: BTreeSet::new(), given_up: BTreeMap::new() }
     }
 
-    /// What has been given.
+    /// Record of the submitted tasks.
     pub fn ledger(&self) -> &Ledger {
         &self.ledger
     }
 
-    /// Gives all pieces that are missing and that no task has. Attempts are counted from here: who goes on has mended
-    /// something.
+    /// Submits all missing pieces that no task has. Attempts are counted again from 0, because the user may have
+    /// corrected the cause.
     pub fn submit(&mut self) -> Result<(), ClusterError> {
         self.ledger.attempts.clear();
         self.ledger.parts.clear();
@@ -113,8 +113,8 @@ impl<'a> Watch<'a> {
         self.give(tasks(&pieces))
     }
 
-    /// Looks once, and gives again what was lost. Fails where pieces are missing that have been given often enough,
-    /// and nothing else is under way.
+    /// Looks once, and submits lost pieces again. Fails if pieces are missing after the last attempt and no other task
+    /// is in progress.
     pub fn look(&mut self) -> Result<Seen, ClusterError> {
         let missing = self.work.missing()?;
         let states = if missing.is_empty() { BTreeMap::new() } else { self.scheduler.states()? };
@@ -149,7 +149,7 @@ impl<'a> Watch<'a> {
             seen.again.extend(left.iter().map(|piece| (*piece, ending)));
             again.entry(grown(request, ending)).or_default().extend(left);
         }
-        // each piece by itself now: one that fails takes no other with it
+        // now one task for each piece: a piece that fails does not stop the others
         let tasks = again
             .into_iter()
             .flat_map(|(request, pieces)| pieces.into_iter().map(move |piece| Task { request, pieces: vec![piece] }));
@@ -167,12 +167,12 @@ impl<'a> Watch<'a> {
         self.ledger.jobs.iter().enumerate().flat_map(of_job).collect()
     }
 
-    /// Those of a task's pieces that are given again.
+    /// Pieces of a task that are submitted again.
     fn worth_another(&mut self, left: Vec<usize>, ending: Ending) -> Vec<usize> {
         let needs = self.work.needs();
         let in_parts = |piece: &&usize| ending == Ending::TimedOut && needs[**piece].goes_on;
         for piece in left.iter().filter(in_parts) {
-            // it has come further: that is no failed attempt
+            // it has made progress, so this is not a failed attempt
             *self.ledger.parts.entry(*piece).or_default() += 1;
             self.ledger.attempts.remove(piece);
         }
@@ -196,8 +196,8 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Gives tasks, those that ask for the same in one array. What has been given is kept after each array, so that a
-    /// kill in between loses one of them at most, whose pieces are then done twice.
+    /// Submits tasks; tasks with the same request are one array. The ledger is stored after each array, so a kill in
+    /// between loses at most one array, whose pieces are then done twice.
     fn give(&mut self, mut tasks: Vec<Task>) -> Result<(), ClusterError> {
         for task in &mut tasks {
             task.request = task.request_within(self.work.needs(), |request| self.scheduler.longest(request));
@@ -220,7 +220,7 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// What a task asks for after one has ended so.
+/// Request of the next task after this end.
 fn grown(request: Request, ending: Ending) -> Request {
     match ending {
         Ending::TimedOut => request.longer(),

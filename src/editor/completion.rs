@@ -1,5 +1,5 @@
-//! What can be written at the cursor: kinds, fields, words, units that fit, entries of the library with their numbers, names of the
-//! scene.
+//! Completion at the cursor: kinds, fields, words, fitting units, entries of the library with their numbers, names of
+//! the scene.
 
 use super::context::{Stand, Wanted, context};
 use super::forms::{fields, follow, has, object_kind, object_kinds, pair_forms};
@@ -18,7 +18,7 @@ use lsp_types::{
     TextEdit,
 };
 
-/// What can be written at an offset.
+/// Completions at an offset.
 pub fn completion(view: &View, cursor: usize) -> Vec<CompletionItem> {
     let found = context(&view.text, cursor);
     let range = view.lines.range(&view.text, found.start, found.end);
@@ -41,7 +41,7 @@ pub fn completion(view: &View, cursor: usize) -> Vec<CompletionItem> {
 
 struct Offers<'v> {
     view: &'v View,
-    /// What an offer takes the place of.
+    /// The range that an offer replaces.
     range: Range,
     items: Vec<CompletionItem>,
 }
@@ -75,7 +75,7 @@ impl Offers<'_> {
         &mut self.items[last]
     }
 
-    /// In the order in which they were offered, each once.
+    /// The offers in their order, without duplicates.
     fn ordered(mut self) -> Vec<CompletionItem> {
         let mut seen = std::collections::BTreeSet::new();
         self.items.retain(|item| seen.insert(item.label.clone()));
@@ -89,8 +89,8 @@ impl Offers<'_> {
         for kind in KINDS.iter().filter(|kind| kind.role != Role::Nested) {
             self.add(kind.name, CompletionItemKind::CLASS, "kind", kind.doc);
         }
-        self.add("let", CompletionItemKind::KEYWORD, "names a value", "");
-        self.add("use", CompletionItemKind::KEYWORD, "brings a module in", "");
+        self.add("let", CompletionItemKind::KEYWORD, "gives a value a name", "");
+        self.add("use", CompletionItemKind::KEYWORD, "imports a module", "");
     }
 
     fn modules(&mut self, names: &[String]) {
@@ -100,18 +100,23 @@ impl Offers<'_> {
             [] => {
                 self.add("std", CompletionItemKind::MODULE, "the standard library", &modules.join(", "));
                 modules.iter().for_each(|module| {
-                    self.add(&format!("std.{module}"), CompletionItemKind::MODULE, "of the standard library", "");
+                    self.add(
+                        &format!("std.{module}"),
+                        CompletionItemKind::MODULE,
+                        "module of the standard library",
+                        "",
+                    );
                 });
                 self.files("");
             }
             [std] if std == "std" => modules.iter().for_each(|module| {
-                self.add(module, CompletionItemKind::MODULE, "of the standard library", "");
+                self.add(module, CompletionItemKind::MODULE, "module of the standard library", "");
             }),
             _ => self.files(&names.join("/")),
         }
     }
 
-    /// Modules that lie as files below the folder of the scene.
+    /// Modules in files in the folder of the scene or below it.
     fn files(&mut self, below: &str) {
         let Some(folder) = &self.view.places.folder else { return };
         let Ok(entries) = std::fs::read_dir(folder.join(below)) else { return };
@@ -126,7 +131,7 @@ impl Offers<'_> {
         }
     }
 
-    /// Fields of a kind that the block does not say yet.
+    /// Fields of a kind that are not yet given in the block.
     fn fields(&mut self, kind: &'static Kind, names: &[String], given: &[String]) {
         let path: Vec<&str> = names.iter().map(String::as_str).collect();
         let (kind, whole) = match follow(kind, &path) {
@@ -144,7 +149,7 @@ impl Offers<'_> {
             let text = format!("{}{ending}", field.name);
             let detail = hover::form_and_need(field);
             let item = self.insert(field.name, &text, CompletionItemKind::FIELD, &detail, &hover::field_meaning(field));
-            // what must be given comes first
+            // required fields come first
             item.preselect = Some(field.need == schema::Need::Required && whole).filter(|first| *first);
         }
         let required = |item: &CompletionItem| item.preselect != Some(true);
@@ -152,7 +157,7 @@ impl Offers<'_> {
         self.items.iter_mut().for_each(|item| item.preselect = None);
     }
 
-    /// Behind `form.` and `sections.`: arguments of a word.
+    /// Arguments of a word, after `form.` and `sections.`.
     fn inside_field(&mut self, field: &'static Field) {
         for word in field.form.words() {
             for argument in word.arguments {
@@ -213,7 +218,7 @@ impl Offers<'_> {
         self.add(word.name, kind, &detail, &documentation);
     }
 
-    /// Objects of these kinds, of every kind where none is named: of the scene, of its modules, of the standard library.
+    /// Objects of these kinds (of all kinds if `kinds` is empty) from the scene, its modules and the standard library.
     fn objects(&mut self, kinds: &[&'static Kind], names: &[String]) {
         let files = &self.view.survey.files;
         if let [module, ..] = names {
@@ -243,7 +248,7 @@ impl Offers<'_> {
         }
     }
 
-    /// The edit that brings the standard library in.
+    /// The edit that imports the standard library.
     fn use_line(&self) -> TextEdit {
         let start = self.view.tree().items.first().map_or(0, |item| match item {
             Item::Use(used) => used.span.start,
@@ -251,7 +256,7 @@ impl Offers<'_> {
             Item::Declaration(d) => d.span.start,
         });
         let mut position = self.view.lines.position(&self.view.text, start as usize);
-        // the docs of the first declaration stay above it
+        // the doc comments of the first declaration stay directly above it
         let docs = |line: u32| {
             let start = self.view.lines.offset(&self.view.text, Position::new(line, 0));
             self.view.text[start..].starts_with("///")
@@ -280,7 +285,7 @@ impl Offers<'_> {
         }
     }
 
-    /// What a declaration says in numbers, in a line.
+    /// The numbers of a declaration in one line.
     fn numbers(&self, declaration: &Declaration, id: ItemId) -> String {
         let file = self.view.survey.files.scopes[id.scope].tree.file;
         let text = &self.view.source(file).text;
@@ -333,15 +338,25 @@ impl Offers<'_> {
                 "ramp",
                 CompletionItemKind::FUNCTION,
                 "ramp(a .. b, over = span)",
-                "straight from one value to another",
+                "linear change from one value to another",
             );
-            self.add("smooth", CompletionItemKind::FUNCTION, "smooth(a .. b, over = span)", "a cubic with level ends");
-            self.add("file", CompletionItemKind::FUNCTION, "file(\"level.csv\")", "a table below the scene's folder");
+            self.add(
+                "smooth",
+                CompletionItemKind::FUNCTION,
+                "smooth(a .. b, over = span)",
+                "cubic change with zero slope at both ends",
+            );
+            self.add(
+                "file",
+                CompletionItemKind::FUNCTION,
+                "file(\"level.csv\")",
+                "a table in the folder of the scene or below it",
+            );
             self.word(&RANDOM);
         }
     }
 
-    /// Behind `module.` or `name.`.
+    /// Completions after `module.` or `name.`.
     fn inside(&mut self, wanted: Wanted, names: &[String]) {
         let files = &self.view.survey.files;
         let is_module = |scope: ScopeId| files.scopes[scope].modules.contains_key(&names[0]);
@@ -355,7 +370,7 @@ impl Offers<'_> {
         self.scene_path(names);
     }
 
-    /// Fields behind the names of a path of the scene; names of the scene where there is none yet.
+    /// Fields after the names of a path of the scene; names of the scene if the path is empty.
     fn scene_path(&mut self, names: &[String]) {
         let Some(first) = names.first() else {
             let files = &self.view.survey.files;
@@ -407,7 +422,7 @@ impl Offers<'_> {
     fn bases(&mut self, wanted: Wanted) {
         for measure in wanted.form.map_or_else(Vec::new, measures) {
             for (name, factor) in measure.basis.map_or(&[][..], |basis| basis.names) {
-                let detail = format!("one rail has {factor} of it");
+                let detail = format!("the value for one rail is {factor} x this value");
                 self.add(name, CompletionItemKind::UNIT, &detail, "");
             }
         }
@@ -423,7 +438,7 @@ impl Offers<'_> {
     }
 }
 
-/// Kinds of the objects of which a list is.
+/// Kinds of the objects in a list.
 fn list_kinds(form: &'static Form) -> Vec<&'static Kind> {
     match form {
         Form::List(item) => object_kinds(item),

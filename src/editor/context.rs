@@ -1,43 +1,42 @@
-//! What may be written at the cursor, from the words before it: it needs no tree, so that a text which is half typed is as good as
-//! any.
+//! The context at the cursor, from the words before it. It needs no syntax tree, so it works in incomplete text.
 
 use super::forms::{argument, follow, item_form, object_kind, pair_forms, word_of};
 use crate::schema::{self, Field, Form, Kind, Role, Word};
 use crate::syntax::{Token, TokenKind, tokens};
 
-/// What may stand at the cursor.
+/// The kind of text that may stand at the cursor.
 #[derive(Debug, Clone)]
 pub enum Stand {
     /// The beginning of an item of the file.
     Item,
-    /// Names of a module so far, behind `use`.
+    /// Names of a module so far, after `use`.
     Module(Vec<String>),
-    /// What a declaration extends, behind names of a path.
+    /// The base of a declaration, after the first names of its path.
     Base(&'static Kind, Vec<String>),
-    /// A field, behind names of a path; and what the block says already.
+    /// A field, after the first names of its path, and the fields that the block already gives.
     Field(&'static Kind, Vec<String>, Vec<String>),
-    /// A value, behind names of a path.
+    /// A value, after the first names of its path.
     Value(Wanted, Vec<String>),
-    /// The unit behind a number.
+    /// The unit after a number.
     Unit(Wanted),
-    /// What a value is `per`.
+    /// The basis after `per`.
     Basis(Wanted),
     /// A value, or the name of an argument of a word.
     Argument(&'static Word, Wanted),
-    /// A path of the scene, behind its first names.
+    /// A path of the scene, after its first names.
     ScenePath(Vec<String>),
     Nothing,
 }
 
-/// What is known of a value that is wanted.
+/// The expected form and field of a value.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wanted {
     pub form: Option<&'static Form>,
-    /// Also of what a list holds that is written without its brackets.
+    /// The form, also of an item of a list that is written without brackets.
     pub field: Option<&'static Field>,
 }
 
-/// What may stand at the cursor, and which part of the text it takes the place of.
+/// The kind of text that may stand at the cursor, and the range that it replaces.
 #[derive(Debug, Clone)]
 pub struct Context {
     pub stand: Stand,
@@ -45,7 +44,7 @@ pub struct Context {
     pub end: usize,
 }
 
-/// A bracket around the cursor: what stands before it in its item, and how many items stand in it so far.
+/// A bracket around the cursor: the tokens before it in its item, and the number of items in it so far.
 #[derive(Debug, Clone)]
 struct Around {
     bracket: char,
@@ -58,14 +57,14 @@ struct Before<'t> {
     text: &'t str,
     around: Vec<Around>,
     item: Vec<Token>,
-    /// The item before, which a bracket on a line of its own may belong to.
+    /// The previous item; a bracket on a separate line may belong to it.
     previous: Vec<Token>,
     items: usize,
-    /// Names of the fields of each block, the outermost first.
+    /// Names of the given fields of each block, the outermost first.
     given: Vec<Vec<String>>,
 }
 
-/// Reads what may stand at an offset.
+/// The context at an offset.
 pub fn context(text: &str, cursor: usize) -> Context {
     let all = tokens(text);
     let touching = all.iter().find(|t| t.start < cursor && cursor <= t.end);
@@ -98,7 +97,7 @@ impl<'t> Before<'t> {
         token.text(self.text)
     }
 
-    /// Goes over one token; `rest` begins with it.
+    /// Reads one token; `rest` begins with it.
     fn take(&mut self, token: Token, rest: &[Token]) {
         if token.is_comment() {
             return;
@@ -132,7 +131,7 @@ impl<'t> Before<'t> {
         }
     }
 
-    /// A word at the cursor may begin an item of the file, which ends a block that is still open.
+    /// Reads the word at the cursor. It may begin an item of the file, which ends an open block.
     fn take_word(&mut self, word: Option<&Token>, all: &[Token]) {
         let Some(word) = word else { return };
         let rest = &all[all.iter().position(|t| t.start == word.start).unwrap_or(0)..];
@@ -143,7 +142,7 @@ impl<'t> Before<'t> {
         }
     }
 
-    /// A header of a known kind at the left margin: nobody indents so inside a block.
+    /// Whether a token is the header of a known kind at the left margin, which does not occur inside a block.
     fn begins_item_of_file(&self, token: &Token, rest: &[Token]) -> bool {
         let margin = token.start == 0 || self.text.as_bytes()[token.start - 1] == b'\n';
         if self.around.is_empty() || token.kind != TokenKind::Word || !margin {
@@ -155,7 +154,7 @@ impl<'t> Before<'t> {
         header && (matches!(word, "use" | "let") || schema::kind(word).is_some_and(|k| k.role != Role::Nested))
     }
 
-    /// Whether the item goes on in the next line.
+    /// Whether the item continues in the next line.
     fn goes_on(&self) -> bool {
         self.item.last().is_some_and(|t| t.kind == TokenKind::Sign && !matches!(self.said(t), "?" | "."))
     }
@@ -172,7 +171,7 @@ impl<'t> Before<'t> {
         self.items += 1;
     }
 
-    /// The names joined by dots at the beginning of an item, and how many tokens they are.
+    /// The names joined by dots at the beginning of an item, and the number of their tokens.
     fn path(&self, item: &[Token]) -> Option<(Vec<String>, usize)> {
         let mut names = Vec::new();
         for (i, token) in item.iter().enumerate() {
@@ -215,7 +214,7 @@ impl<'t> Before<'t> {
         }
     }
 
-    /// What stands inside one more bracket.
+    /// The context inside one more bracket.
     fn inside(&self, here: Inside, around: &Around) -> Inside {
         let item = around.before.as_slice();
         match here {
@@ -250,7 +249,7 @@ impl<'t> Before<'t> {
         }
     }
 
-    /// What a field of a block wants, and the tokens of its value so far.
+    /// The expected value of a field of a block, and the tokens of the value so far.
     fn field_value<'i>(&self, kind: &'static Kind, item: &'i [Token]) -> Option<(Wanted, &'i [Token])> {
         let (names, taken) = self.path(item)?;
         let sign = item.get(taken)?;
@@ -262,7 +261,7 @@ impl<'t> Before<'t> {
         }
     }
 
-    /// What stands inside a bracket that opens in a value.
+    /// The context inside a bracket that opens in a value.
     fn opened(&self, wanted: Wanted, value: &[Token], bracket: char) -> Inside {
         match bracket {
             '{' => wanted.form.and_then(object_kind).map_or(Inside::Unknown, Inside::Fields),
@@ -341,7 +340,7 @@ impl<'t> Before<'t> {
         }
     }
 
-    /// What an argument wants, by its name or its place, and the tokens of its value so far.
+    /// The expected value of an argument, by its name or its position, and the tokens of the value so far.
     fn argument<'i>(
         &self,
         word: &'static Word,
@@ -355,13 +354,13 @@ impl<'t> Before<'t> {
                 let field = word.arguments.iter().find(|a| a.name == self.said(name));
                 (field.map_or_else(Wanted::default, of), rest)
             }
-            // the mean of what scatters is of the field itself
+            // the mean of a random value has the form of the field itself
             _ if word.name == schema::RANDOM.name => (wanted, item),
             _ => (word.arguments.get(place).map_or_else(Wanted::default, of), item),
         }
     }
 
-    /// What goes on a value of which these tokens stand there.
+    /// The context after these tokens of a value.
     fn value(&self, value: &[Token], wanted: Wanted) -> Stand {
         let Some(last) = value.last() else { return Stand::Value(wanted, Vec::new()) };
         if self.said(last) == "per" {
@@ -380,14 +379,14 @@ impl<'t> Before<'t> {
         }
     }
 
-    /// Where the unit begins that is typed behind the last number of a value.
+    /// Index of the first token of the unit after the last number of a value.
     fn unit_tokens(&self, value: &[Token]) -> Option<usize> {
-        // an exponent is a number too: `N/mm^3`
+        // an exponent is also a number: `N/mm^3`
         let number = (0..value.len())
             .rev()
             .find(|i| value[*i].kind == TokenKind::Number && !(*i > 0 && self.said(&value[*i - 1]) == "^"))?;
         let unit = &value[number + 1..];
-        // signs of arithmetic have blanks around them
+        // operators of arithmetic have spaces around them
         let touches = |i: usize| i > 0 && unit[i - 1].end == unit[i].start;
         let part = |i: usize| match unit[i].kind {
             TokenKind::Word => self.said(&unit[i]) != "per",
@@ -398,14 +397,14 @@ impl<'t> Before<'t> {
         (0..unit.len()).all(part).then_some(number + 1)
     }
 
-    /// Where in the text the unit before the cursor begins.
+    /// Offset of the start of the unit before the cursor.
     fn unit_start(&self) -> Option<usize> {
         let from = self.unit_tokens(&self.item)?;
         self.item.get(from).map(|t| t.start)
     }
 }
 
-/// What stands between a pair of brackets.
+/// The content of a pair of brackets.
 #[derive(Clone, Copy)]
 enum Inside {
     File,
@@ -418,12 +417,12 @@ enum Inside {
     Unknown,
 }
 
-/// The kind of a name, also of one that is misspelt.
+/// The kind with a name, also if the name is misspelt.
 fn meant(name: &str) -> Option<&'static Kind> {
     schema::kind(name).filter(|kind| kind.role != Role::Nested).or_else(|| schema::meant_kind(name))
 }
 
-/// What the field at a path wants; where a name is misspelt, the field that is meant.
+/// The expected value of the field at a path; for a misspelt name, of the field that is meant.
 fn wanted(kind: &'static Kind, names: &[String]) -> Option<Wanted> {
     let path: Vec<&str> = names.iter().map(String::as_str).collect();
     if let Some((_, field)) = follow(kind, &path) {
@@ -454,7 +453,7 @@ fn wanted(kind: &'static Kind, names: &[String]) -> Option<Wanted> {
 mod tests {
     use super::*;
 
-    /// Where `|` stands in a text.
+    /// The context at `|` in a text.
     fn stand(text: &str) -> String {
         let cursor = text.find('|').unwrap();
         let text = text.replace('|', "");

@@ -1,4 +1,4 @@
-//! Where a name is given: in this file, in a module, in the standard library.
+//! The definition of a name: in this file, in a module, or in the standard library.
 
 use super::marks::{Mark, Place, What};
 use super::view::View;
@@ -6,7 +6,7 @@ use crate::check::ItemId;
 use crate::diag::Span;
 use lsp_types::Location;
 
-/// Where what stands at an offset is given.
+/// The definition of the word at an offset.
 pub fn definition(view: &View, offset: usize) -> Option<Location> {
     if let Some(file) = data_file(view, offset) {
         return Some(file);
@@ -23,7 +23,8 @@ pub fn definition(view: &View, offset: usize) -> Option<Location> {
     view.places.location(sources, span.file, span.start as usize, span.end as usize)
 }
 
-/// Where a field of a path is given: behind `open.pad` that of `open`; on the left of `=` that of what is extended.
+/// The place that gives a field of a path: for `open.pad` the field of `open`; on the left of `=` the field of the
+/// extended item.
 fn given(view: &View, mark: &Mark, place: &Place) -> Option<Span> {
     let files = &view.survey.files;
     let found = files.given(place.id, &place.path)?;
@@ -35,7 +36,7 @@ fn given(view: &View, mark: &Mark, place: &Place) -> Option<Span> {
     files.given(target.id, &place.path)
 }
 
-/// Where a track names its transition.
+/// The place at which a track names the transition.
 fn transition(view: &View, mark: &Mark) -> Option<Span> {
     let text = |span: Span| view.text.get(span.start as usize..span.end as usize);
     let named = view
@@ -46,7 +47,7 @@ fn transition(view: &View, mark: &Mark) -> Option<Span> {
     Some(named.span)
 }
 
-/// The data file that a text in `file("level.csv")` names.
+/// The data file in `file("level.csv")`.
 fn data_file(view: &View, offset: usize) -> Option<Location> {
     let mark = view.marks.find(offset).filter(|mark| matches!(mark.what, What::Text))?;
     let before = view.text.get(..mark.span.start as usize)?.trim_end().strip_suffix('(')?;
@@ -58,7 +59,7 @@ fn data_file(view: &View, offset: usize) -> Option<Location> {
     view.places.location(&view.survey.checked.sources, file, 0, 0)
 }
 
-/// The item that the word at an offset stands for.
+/// The item that the word at an offset refers to.
 pub fn item(view: &View, offset: usize) -> Option<ItemId> {
     match view.mark(offset)?.what {
         What::Declared(id) | What::Reference(id) => Some(id),

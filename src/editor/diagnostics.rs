@@ -1,4 +1,4 @@
-//! Diagnostics as an editor shows them: at their place, with second places beside them and their edits at hand.
+//! Diagnostics for an editor: the main place, the related places, and the edits.
 
 use super::files::Places;
 use super::positions::Lines;
@@ -8,7 +8,7 @@ use lsp_types::{
 };
 use serde::{Deserialize, Serialize};
 
-/// An edit that travels with its diagnostic.
+/// An edit that belongs to a diagnostic.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Remedy {
     pub title: String,
@@ -31,7 +31,7 @@ struct Page<'a> {
 
 impl Page<'_> {
     fn shown(&self, diagnostic: &Diagnostic) -> lsp_types::Diagnostic {
-        // the first place in this file: what stands in another file is shown where this one leads there
+        // the first place in this file; a fault in another file is shown at the place that leads there
         let own = diagnostic.labels.iter().find(|label| label.span.file == FileId(0));
         let range = own.map_or_else(|| Range::new(Position::new(0, 0), Position::new(0, 0)), |l| self.range(l.span));
         let mut message = diagnostic.message.clone();
@@ -82,7 +82,7 @@ impl Page<'_> {
     }
 }
 
-/// Whether what it points at could be taken out.
+/// Whether the marked text could be removed.
 fn is_idle(diagnostic: &Diagnostic) -> bool {
     use crate::diag::Code;
     matches!(diagnostic.code, Code::E0412 | Code::E0429)

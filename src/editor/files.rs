@@ -1,4 +1,4 @@
-//! Where files lie: texts that are open in the editor come before those of the folder, and trees are kept between two keystrokes.
+//! Files of a scene: open texts have priority over files on the disk, and syntax trees are kept between two edits.
 
 use super::positions::Lines;
 use crate::check::{DataError, Folder, Modules, Parsed};
@@ -11,23 +11,23 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Texts that are open, by their path.
 pub type OpenTexts = Arc<BTreeMap<PathBuf, Arc<str>>>;
 
-/// Trees of texts that seldom change: of the standard library, of defaults and of modules.
+/// Syntax trees of texts that seldom change: the standard library, defaults and modules.
 #[derive(Default)]
 pub struct Trees {
     known: Mutex<HashMap<(FileId, String), Parsed>>,
 }
 
-/// More than a scene has: what is older is parsed again.
+/// Largest number of stored trees, more than a scene has.
 const MOST_TREES: usize = 400;
 
 impl Trees {
     fn parsed(&self, file: FileId, text: &str) -> Parsed {
-        // the main file changes with every key
+        // the main file changes with every edit
         if file == FileId(0) {
             return Parsed::new(file, text);
         }
         let key = (file, text.to_owned());
-        // a panic elsewhere leaves the map whole: trees are put into it finished
+        // a panic elsewhere leaves the map valid: only finished trees are put into it
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if known.len() >= MOST_TREES && !known.contains_key(&key) {
             known.clear();
@@ -38,7 +38,7 @@ impl Trees {
 
 /// The modules and data files beside a file.
 pub struct Beside {
-    /// `None` for a text that has no file yet.
+    /// `None` for a text without a file.
     pub folder: Option<PathBuf>,
     pub open: OpenTexts,
     pub trees: Arc<Trees>,
@@ -62,18 +62,18 @@ impl Modules for Beside {
     }
 }
 
-/// Where the sources of a scene lie, as addresses.
+/// Addresses of the sources of a scene.
 #[derive(Debug, Clone)]
 pub struct Places {
     pub main: Url,
     /// The folder of the main file.
     pub folder: Option<PathBuf>,
-    /// The folder in which the standard library is laid down to be looked at.
+    /// The folder in which the standard library is written as files.
     pub library: PathBuf,
 }
 
 impl Places {
-    /// The address of a source; `None` where it is no file, as a default is.
+    /// The address of a source; `None` if it is not a file, such as a default.
     pub fn address(&self, sources: &Sources, file: FileId) -> Option<Url> {
         let source = sources.get(file);
         if file == FileId(0) {

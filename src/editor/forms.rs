@@ -1,4 +1,4 @@
-//! What may stand inside a value, by its form: the way from a field down to what is written in it.
+//! The parts of a value by its form: from a field down to its content.
 
 use crate::schema::{self, COMMON, Field, Form, Kind, RANDOM, Word};
 
@@ -16,7 +16,7 @@ pub fn object_kinds(form: &Form) -> Vec<&'static Kind> {
     }
 }
 
-/// What an item of a list is; the form itself where it takes no list, since a list may also be a profile.
+/// The form of an item of a list; the form itself if it takes no list, because a list may also be a profile.
 pub fn item_form(form: &'static Form) -> &'static Form {
     match form {
         Form::List(item) => item,
@@ -35,7 +35,7 @@ pub fn pair_forms(form: &'static Form) -> Option<(&'static Form, &'static Form)>
     }
 }
 
-/// Whether a form is, or may be, one of those that `wanted` knows.
+/// Whether a form, or one of its alternatives, satisfies `wanted`.
 pub fn has(form: &Form, wanted: fn(&Form) -> bool) -> bool {
     match form {
         Form::OneOf(forms) => forms.iter().any(|f| has(f, wanted)),
@@ -59,12 +59,12 @@ pub fn argument(form: &'static Form, name: &str) -> Option<(&'static Word, &'sta
     form.words().into_iter().find_map(|word| Some((word, word.arguments.iter().find(|a| a.name == name)?)))
 }
 
-/// The word with arguments of that name: one of the form, or what scatters along the track.
+/// The word with this name: a word of the form, or `random`.
 pub fn word_of(form: Option<&'static Form>, name: &str) -> Option<&'static Word> {
     form.and_then(|form| form.word(name)).or_else(|| (name == RANDOM.name).then_some(&RANDOM))
 }
 
-/// Every field of a kind, with those that it may change and those that every kind has.
+/// All fields of a kind, with the fields that it may change and the common fields.
 pub fn fields(kind: &'static Kind) -> impl Iterator<Item = &'static Field> {
     let changed = kind.changes().into_iter().flat_map(|changed| changed.fields);
     kind.fields.iter().chain(changed).chain(COMMON)

@@ -1,11 +1,12 @@
-//! The vocabulary as a TextMate grammar, for editors that colour by patterns before, or without, the language server.
+//! The vocabulary as a TextMate grammar, for editors that colour by patterns before the language server starts, or
+//! without it.
 
 use crate::scenario::response::Response;
 use crate::schema::{COMMON, Field, KINDS, RANDOM, Role, Word};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
-/// The grammar, as the file that editors read.
+/// The grammar as a file for editors.
 pub fn textmate() -> String {
     format!("{:#}\n", grammar())
 }
@@ -69,7 +70,7 @@ fn grammar() -> Value {
     })
 }
 
-/// Names of a field and of all that stands in its words.
+/// Collects the names of a field, of its words and of their arguments.
 fn collect(field: &'static Field, fields: &mut BTreeSet<&'static str>, words: &mut BTreeSet<&'static str>) {
     fields.insert(field.name);
     for word in field.form.words() {
@@ -81,7 +82,7 @@ fn collect(field: &'static Field, fields: &mut BTreeSet<&'static str>, words: &m
     }
 }
 
-/// `a|b`, longer names first, so that none hides another.
+/// `a|b` with longer names first, so that a name does not hide a longer one.
 fn either(names: impl IntoIterator<Item = &'static str>) -> String {
     let mut names: Vec<&str> = names.into_iter().collect();
     names.sort_by_key(|name| (std::cmp::Reverse(name.len()), *name));

@@ -1,4 +1,4 @@
-//! Inlay hints: what follows from the values of a declaration and stands nowhere, such as the axle load that masses make.
+//! Inlay hints: values that follow from a declaration but are not written in it, such as the axle load from the masses.
 
 use super::view::View;
 use crate::check::{Content, ItemId, Object};
@@ -6,7 +6,7 @@ use crate::syntax::tree::Declaration;
 use crate::units::{Dimension, number, parse_unit};
 use lsp_types::{InlayHint, InlayHintKind, InlayHintLabel, InlayHintTooltip, Range};
 
-/// The hints of a part of the text, each behind the header of its declaration.
+/// The hints in a part of the text, each after the header of its declaration.
 pub fn hints(view: &View, range: Range) -> Vec<InlayHint> {
     let mut out = Vec::new();
     for (id, declaration) in view.declarations() {
@@ -32,7 +32,7 @@ pub fn hints(view: &View, range: Range) -> Vec<InlayHint> {
     out
 }
 
-/// What follows for a declaration: a text, and how it is computed.
+/// The derived value of a declaration as text, and its formula.
 fn derived(view: &View, id: ItemId, declaration: &Declaration) -> Option<(String, &'static str)> {
     let object = view.survey.objects.get(&id)?;
     let says = |path: &str| declaration.fields.iter().any(|field| field.path.text() == path);
@@ -56,12 +56,15 @@ fn vehicle(object: &Object) -> Option<(String, &'static str)> {
         let axle = if dimension == Dimension::FORCE { load / 9.81 } else { load };
         let body = 2.0 * (2.0 * axle - unsprung);
         return (body > 0.0).then(|| {
-            (format!("car body {}", tonnes(body)), "what the axle load leaves for the car body of the whole vehicle")
+            (
+                format!("car body {}", tonnes(body)),
+                "mass of the car body of the whole vehicle that follows from the axle load",
+            )
         });
     }
     let body = object.number(&["car_body", "mass"])?;
     let axle = (body + unsprung) / 2.0;
-    Some((format!("axle load {}", tonnes(axle)), "the masses of car body, bogies and wheelsets over four axles"))
+    Some((format!("axle load {}", tonnes(axle)), "mass of car body, bogies and wheelsets / four axles"))
 }
 
 fn rail(object: &Object) -> Option<(String, &'static str)> {

@@ -1,4 +1,5 @@
-//! What a word means: of a field its unit, range and default, and what it holds here and from where; of a name what it stands for.
+//! Hover text of a word: for a field its unit, range, default, and its value with the source of the value; for a name
+//! its declaration.
 
 use super::marks::{Mark, Place, What};
 use super::names::name_of;
@@ -11,7 +12,7 @@ use crate::syntax::tree::Item;
 use crate::units::{number, parse_unit};
 use lsp_types::{Hover, HoverContents, MarkupContent, MarkupKind};
 
-/// What the word at an offset means.
+/// Hover text of the word at an offset.
 pub fn hover(view: &View, offset: usize) -> Option<Hover> {
     let mark = view.mark(offset)?;
     let value = meaning(view, mark)?;
@@ -42,8 +43,8 @@ fn meaning(view: &View, mark: &Mark) -> Option<String> {
         What::Transition(_) => format!("**{}** (transition)", text()?),
         What::Number(Some(field)) => format!("**{}**: {}\n\n{}", field.name, form_and_need(field), field.doc),
         What::Unit => unit(text()?)?,
-        What::Basis => format!("the value is of one {}", text()?),
-        What::Hole => "a hole: to be given before a run".into(),
+        What::Basis => format!("the value is for one {}", text()?),
+        What::Hole => "a hole: replace it by a value before a run".into(),
         What::Number(None) | What::Text | What::Function => return None,
     })
 }
@@ -53,7 +54,7 @@ fn paragraphs(parts: [String; 3]) -> String {
     said.join("\n\n")
 }
 
-/// A unit with what it measures and its size.
+/// A unit with its dimension and its size.
 fn unit(text: &str) -> Option<String> {
     let unit = parse_unit(text).ok()?;
     let si = unit.dimension.si_unit();
@@ -61,7 +62,7 @@ fn unit(text: &str) -> Option<String> {
     Some(format!("`{text}`: {}, 1 {text} = {size}", unit.dimension.describe()))
 }
 
-/// What may stand in a field, and whether it must: `MN/m, 5 .. 3000; required`.
+/// Allowed values of a field, and whether it is required: `MN/m, 5 .. 3000; required`.
 pub fn form_and_need(field: &Field) -> String {
     let form = schema::form_text(&field.form);
     match field.need {
@@ -72,11 +73,11 @@ pub fn form_and_need(field: &Field) -> String {
     }
 }
 
-/// What a field is for, with its words.
+/// Description of a field, with its words.
 pub fn field_meaning(field: &Field) -> String {
     let words = field.form.words().into_iter().filter(|word| !word.planned && !word.doc.is_empty());
     let words: Vec<String> = words.map(|word| format!("- `{}`: {}", word.name, word.doc)).collect();
-    let unread = if field.unread { "no run of this version reads it yet" } else { "" };
+    let unread = if field.unread { "not used by this version" } else { "" };
     paragraphs([field.doc.to_owned(), words.join("\n"), unread.to_owned()])
 }
 
@@ -93,14 +94,14 @@ pub fn signature(word: &Word) -> String {
     format!("{}({})", word.name, arguments.join(", "))
 }
 
-/// What a word means, with its arguments.
+/// Description of a word, with its arguments.
 pub fn word_meaning(word: &Word) -> String {
     let arguments: Vec<String> =
-        word.arguments.iter().map(|a| format!("- `{}`: {} {}", a.name, form_and_need(a), a.doc)).collect();
+        word.arguments.iter().map(|a| format!("- `{}` ({}): {}", a.name, form_and_need(a), a.doc)).collect();
     paragraphs([word.doc.to_owned(), arguments.join("\n"), String::new()])
 }
 
-/// What a field holds in the end, and where it comes from.
+/// The value of a field here, and its source.
 fn value(view: &View, place: &Place) -> Option<String> {
     let object = view.survey.objects.get(&place.id)?;
     let held = object.held(&place.path)?;
@@ -108,7 +109,7 @@ fn value(view: &View, place: &Place) -> Option<String> {
     Some(format!("here `{text}`, {}", origin(view, held)))
 }
 
-/// A value as it holds, in a line.
+/// A value in one line.
 fn held_text(view: &View, held: &Held) -> Option<String> {
     match &held.content {
         Content::Number { text, .. } => Some(text.clone()),
@@ -124,7 +125,7 @@ fn held_text(view: &View, held: &Held) -> Option<String> {
     }
 }
 
-/// Where a value comes from, in words.
+/// The source of a value in words.
 fn origin(view: &View, held: &Held) -> String {
     let place = |span: crate::diag::Span| {
         let source = view.source(span.file);
@@ -142,7 +143,7 @@ fn origin(view: &View, held: &Held) -> String {
     }
 }
 
-/// A declaration or a `let`: what it is, what its author says of it, what it holds.
+/// A declaration or a `let`: its kind, its doc comment, its content.
 pub fn declared(view: &View, id: ItemId) -> String {
     let item = view.survey.files.item(id);
     let (name, _) = name_of(item);
@@ -163,7 +164,7 @@ pub fn declared(view: &View, id: ItemId) -> String {
     }
 }
 
-/// What an object holds, a line for each field; what is written where nothing has been evaluated.
+/// The content of an object, one line for each field; the written text if the object has not been evaluated.
 fn table(view: &View, id: ItemId) -> String {
     match view.survey.objects.get(&id) {
         Some(object) if !matches!(object.kind.role, Role::Changes(_)) => lines(view, object, "").join("\n"),
@@ -185,7 +186,7 @@ fn lines(view: &View, object: &Object, prefix: &str) -> Vec<String> {
     object.fields.iter().flat_map(one).take(40).collect()
 }
 
-/// The fields of a declaration as they are written.
+/// The fields of a declaration as written.
 fn written(view: &View, id: ItemId) -> String {
     let Some(declaration) = view.survey.files.declaration(id) else { return String::new() };
     let text = &view.source(declaration.span.file).text;

@@ -4,7 +4,7 @@ use super::positions::Lines;
 use crate::syntax;
 use lsp_types::TextEdit;
 
-/// The edits that lay a text out; none where it is laid out, or cannot be read.
+/// The edits that format a text; empty if it is already formatted or cannot be parsed.
 pub fn layout(text: &str, lines: &Lines) -> Vec<TextEdit> {
     match syntax::format(text) {
         Ok(laid_out) if laid_out != text => vec![difference(text, &laid_out, lines)],
@@ -12,7 +12,7 @@ pub fn layout(text: &str, lines: &Lines) -> Vec<TextEdit> {
     }
 }
 
-/// One edit from a text to another, without the lines that both begin and end with.
+/// One edit from a text to another, without the equal lines at the beginning and at the end.
 fn difference(old: &str, new: &str, lines: &Lines) -> TextEdit {
     let same = |a: &mut dyn Iterator<Item = &str>, b: &mut dyn Iterator<Item = &str>| {
         a.zip(b).take_while(|(a, b)| a == b).map(|(a, _)| a.len()).sum::<usize>()

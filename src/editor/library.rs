@@ -1,10 +1,10 @@
-//! The standard library as files, so that an editor can show where a name leads.
+//! The standard library as files, so that an editor can show the definition of a name.
 
 use crate::check::LIBRARY;
 use std::path::Path;
 use std::{fs, io};
 
-/// Writes the library below a folder, as it is in this program.
+/// Writes the library of this program below a folder.
 pub fn lay_down(folder: &Path) -> io::Result<()> {
     let folder = folder.join("std");
     fs::create_dir_all(&folder)?;

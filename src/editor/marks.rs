@@ -1,5 +1,5 @@
-//! What each word of a file is: a kind, a field, a name and what it stands for, a unit. Hover, definitions, references and colours
-//! all read this list.
+//! The meaning of each word of a file: a kind, a field, a name with its item, a unit. Hover, definitions, references
+//! and colours use this list.
 
 use super::forms::{argument, follow, has, item_form, object_kind, pair_forms, word_of};
 use super::names::kind_of;
@@ -9,32 +9,32 @@ use crate::scenario::response::Response;
 use crate::schema::{self, Field, Form, Kind, Role, Word};
 use crate::syntax::tree::{self, Argument, Declaration, Entry, Item, Name, Path, UnitText, Value, ValueKind};
 
-/// A word of the text and what it is.
+/// A word of the text and its meaning.
 #[derive(Debug, Clone)]
 pub struct Mark {
     pub span: Span,
     pub what: What,
 }
 
-/// What a word of a text is.
+/// The meaning of a word of a text.
 #[derive(Debug, Clone)]
 pub enum What {
     /// The kind of a declaration.
     Kind(&'static Kind),
-    /// The name under which an item is declared.
+    /// The name of an item in its declaration.
     Declared(ItemId),
-    /// A name that stands for an item.
+    /// A name that refers to an item.
     Reference(ItemId),
     Module(ScopeId),
-    /// A field, and where it stands if that can be said by a path of an item.
+    /// A field, and its place if it has a path in an item.
     Field(&'static Kind, &'static Field, Option<Place>),
     Argument(&'static Word, &'static Field),
     Word(&'static Word),
-    /// A word with arguments that is of no field: `max`, `ramp`.
+    /// A word with arguments that belongs to no field: `max`, `ramp`.
     Function,
     Response(Response),
     Rule(Code),
-    /// A name of a transition, and whether it is given here.
+    /// A name of a transition, and whether it is defined here.
     Transition(bool),
     Number(Option<&'static Field>),
     Unit,
@@ -50,12 +50,12 @@ pub struct Place {
     pub path: Vec<&'static str>,
 }
 
-/// The words of one file, in its order.
+/// The words of one file, in the order of the text.
 #[derive(Debug, Default)]
 pub struct Marks(pub Vec<Mark>);
 
 impl Marks {
-    /// Reads what the words of one of the files are.
+    /// Reads the words of one of the files.
     pub fn new(files: &Files, scope: ScopeId) -> Marks {
         let mut reader = Reader { files, scope, marks: Vec::new() };
         for (item, thing) in files.scopes[scope].tree.items.iter().enumerate() {
@@ -65,18 +65,18 @@ impl Marks {
         Marks(reader.marks)
     }
 
-    /// The word at an offset, or that ends there.
+    /// The word at an offset, or the word that ends there.
     pub fn find(&self, offset: usize) -> Option<&Mark> {
         let touches = |mark: &&Mark| mark.span.start as usize <= offset && offset <= mark.span.end as usize;
         let until = self.0.partition_point(|mark| mark.span.start as usize <= offset);
         let from = until.saturating_sub(4);
         let near = &self.0[from..until];
-        // of two that meet, the one that begins here
+        // of two adjacent words, the word that begins here
         near.iter().rev().find(touches)
     }
 }
 
-/// What is read: what the form around a value says of it.
+/// The form and the field of a value, from its surroundings.
 #[derive(Clone, Copy, Default)]
 struct Asked {
     form: Option<&'static Form>,
@@ -142,7 +142,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Marks the names of a path on the left of `=`; the field that it leads to, and its place.
+    /// Marks the names of a path on the left of `=`; returns the field of the path and its place.
     fn path(
         &mut self,
         path: &Path,
@@ -258,7 +258,7 @@ impl Reader<'_> {
         let target = self.files.target(path, self.scope);
         let (kind, taken) = match target {
             Some(target) => (self.files.kind(target.id)?, target.taken),
-            // `solve` is there whether it is declared or not
+            // `solve` exists even if it is not declared
             None => (schema::kind(&path.names[0].text)?, 1),
         };
         let rest: Vec<&str> = path.names[taken..].iter().map(|name| name.text.as_str()).collect();
@@ -276,14 +276,15 @@ impl Reader<'_> {
             if let (Some(name), Some(word), Some(field)) = (&argument.name, known, field) {
                 self.mark(name.span, What::Argument(word, field));
             }
-            // the mean of what scatters is of the field itself
+            // the mean of a random value has the form of the field itself
             let inner = field.map(|field| Asked { form: Some(&field.form), field: Some(field) });
             let mean = argument.name.is_none() && word.text == "random";
             self.value(&argument.value, inner.filter(|_| !mean).unwrap_or(asked));
         }
     }
 
-    /// A bare name is a word that the field knows, else a response, a rule or a transition where it reads such, else a name.
+    /// A bare name is a word of the field; otherwise a response, a rule or a transition if the field takes these;
+    /// otherwise a name.
     fn name(&mut self, path: &Path, asked: Asked) {
         if let [name] = path.names.as_slice() {
             let reads = |wanted: fn(&Form) -> bool| asked.form.is_some_and(|form| has(form, wanted));
@@ -310,7 +311,7 @@ fn is_number(form: &Form) -> bool {
     matches!(form, Form::Number(_))
 }
 
-/// Whether responses are read there.
+/// Whether a form takes responses.
 pub fn is_asking(form: &Form) -> bool {
     matches!(form, Form::Response | Form::Comparison | Form::Expression)
 }

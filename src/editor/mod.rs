@@ -1,8 +1,8 @@
-//! What editors ask of a text while it is typed, over the language server protocol.
+//! The language server: answers for editors while a text is edited.
 //!
-//! A [`view::View`] holds one text with its names and values; each request is a function from a view and a place to plain data, in a
-//! file of its own. `session` keeps the open documents, `worker` computes what takes longer than a key, and `server` alone speaks
-//! the protocol.
+//! A [`view::View`] holds one text with its names and values. Each request is a function from a view and a place to
+//! plain data, in a separate file. `session` keeps the open documents, `worker` does the longer computations, and only
+//! `server` uses the protocol.
 
 mod actions;
 mod completion;

@@ -1,11 +1,11 @@
-//! Looks names up in the files of a scene, as the check does, without a word about those that are not known.
+//! Looks up names in the files of a scene, as the check does, but without diagnostics for unknown names.
 
 use crate::check::{Files, ItemId, ScopeId};
 use crate::diag::Span;
 use crate::schema::{self, Kind};
 use crate::syntax::tree::{Declaration, Field, Item, Path, ValueKind};
 
-/// What a path names, and how many of its names are left to follow inside.
+/// The item at the beginning of a path, and the number of names that lead to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Target {
     pub id: ItemId,
@@ -13,7 +13,7 @@ pub struct Target {
 }
 
 impl Files {
-    /// The item of that id.
+    /// The item with this id.
     pub fn item(&self, id: ItemId) -> &Item {
         &self.scopes[id.scope].tree.items[id.item]
     }
@@ -29,12 +29,12 @@ impl Files {
         inside().or_else(|| self.named(scope, first).map(|id| Target { id, taken: 1 }))
     }
 
-    /// The item of that name in a file.
+    /// The item with this name in a file.
     pub fn named(&self, scope: ScopeId, name: &str) -> Option<ItemId> {
         self.scopes[scope].names.get(name).map(|item| ItemId { scope, item: *item })
     }
 
-    /// The declaration of that id.
+    /// The declaration with this id.
     pub fn declaration(&self, id: ItemId) -> Option<&Declaration> {
         match self.item(id) {
             Item::Declaration(declaration) => Some(declaration),
@@ -42,7 +42,7 @@ impl Files {
         }
     }
 
-    /// The kind of what is declared there.
+    /// The kind of the declaration with this id.
     pub fn kind(&self, id: ItemId) -> Option<&'static Kind> {
         kind_of(self.declaration(id)?)
     }
@@ -52,7 +52,7 @@ impl Files {
         name_of(self.item(id))
     }
 
-    /// Where a path inside a declaration is given: there, or in what it extends.
+    /// The place that gives a path inside a declaration: in the declaration or in its base.
     pub fn given(&self, id: ItemId, path: &[&str]) -> Option<Span> {
         self.given_within(id, path, 16)
     }
@@ -89,12 +89,12 @@ impl Files {
     }
 }
 
-/// The kind that a declaration says.
+/// The kind of a declaration.
 pub fn kind_of(declaration: &Declaration) -> Option<&'static Kind> {
     schema::kind(&declaration.kind.text).or_else(|| schema::meant_kind(&declaration.kind.text))
 }
 
-/// The name of an item, that of its kind where it has none, and its place.
+/// The name of an item, or the name of its kind if it has none, and its place.
 pub fn name_of(item: &Item) -> (&str, Span) {
     let name = match item {
         Item::Let(binding) => &binding.name,

@@ -49,7 +49,7 @@ fn field_symbol(view: &View, field: &Field) -> DocumentSymbol {
     symbol(view, field.path.text(), detail, SymbolKind::FIELD, field.span, field.path.span, inner)
 }
 
-/// The first line of a part of the text, not too long.
+/// The first line of a part of the text, shortened.
 fn one_line(view: &View, span: Span) -> String {
     let text = view.text.get(span.start as usize..span.end as usize).unwrap_or_default();
     let line = text.lines().next().unwrap_or_default();
@@ -57,7 +57,7 @@ fn one_line(view: &View, span: Span) -> String {
     if short.len() < text.trim_end().len() { format!("{short} ...") } else { short }
 }
 
-/// A symbol; what shows its name lies inside it, as the protocol wants it.
+/// A symbol; the range of its name lies inside its range, as the protocol requires.
 fn symbol(
     view: &View,
     name: String,
@@ -68,7 +68,7 @@ fn symbol(
     children: Vec<DocumentSymbol>,
 ) -> DocumentSymbol {
     let range: Range = view.range(whole.start.min(selection.start), whole.end.max(selection.end));
-    #[allow(deprecated, reason = "the type has no other way to be made, and the field says nothing")]
+    #[allow(deprecated, reason = "the type cannot be constructed without this field, and the field is unused")]
     DocumentSymbol {
         name,
         detail: Some(detail).filter(|detail| !detail.is_empty()),

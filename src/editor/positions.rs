@@ -1,8 +1,8 @@
-//! Places of a text: byte offsets here, lines and UTF-16 columns in the protocol.
+//! Places in a text: byte offsets here, lines and UTF-16 columns in the protocol.
 
 use lsp_types::{Position, Range};
 
-/// Where the lines of a text begin.
+/// Offsets of the lines of a text.
 #[derive(Debug, Clone)]
 pub struct Lines {
     starts: Vec<usize>,
@@ -32,7 +32,7 @@ impl Lines {
         start + content.len()
     }
 
-    /// The position of an offset; the beginning of a character that it lies in.
+    /// The position of an offset; an offset inside a character gives the beginning of the character.
     pub fn position(&self, text: &str, offset: usize) -> Position {
         let mut offset = offset.min(text.len());
         while !text.is_char_boundary(offset) {

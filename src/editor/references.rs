@@ -1,4 +1,4 @@
-//! Every place that names the same thing, and its new name in all of them.
+//! All references to the same item or transition, and renaming of all references.
 
 use super::definition::item;
 use super::files::Places;
@@ -9,21 +9,21 @@ use crate::diag::{FileId, Sources, Span};
 use lsp_types::{Location, Range, TextEdit, Url, WorkspaceEdit};
 use std::collections::HashMap;
 
-/// Another scene of the workspace, with its own names: it may use the file in which something is declared.
+/// Another scene of the workspace, with its own names; it may use the file of a declaration.
 pub struct Neighbour {
     pub sources: Sources,
     pub files: Files,
     pub places: Places,
 }
 
-/// What is looked for: an item of a file, or a transition of this one.
+/// The target of a search: an item of a file, or a transition of this scene.
 enum Wanted {
     /// The address of the file, and the place of the name in it.
     Item(Url, Span),
     Transition(String),
 }
 
-/// Every place that names what stands at an offset, the declaration among them.
+/// All references to the item at an offset, including its declaration.
 pub fn references(view: &View, neighbours: &[Neighbour], offset: usize) -> Vec<Location> {
     let Some(wanted) = wanted(view, offset) else { return Vec::new() };
     let sources = &view.survey.checked.sources;
@@ -58,7 +58,7 @@ fn in_scene(wanted: &Wanted, sources: &Sources, files: &Files, places: &Places) 
     found
 }
 
-/// Whether a mark names what is looked for.
+/// Whether a mark refers to the target.
 fn names(mark: &Mark, wanted: &Wanted, sources: &Sources, files: &Files, places: &Places) -> bool {
     match (wanted, &mark.what) {
         (Wanted::Transition(name), What::Transition(_)) => {
@@ -73,13 +73,13 @@ fn names(mark: &Mark, wanted: &Wanted, sources: &Sources, files: &Files, places:
     }
 }
 
-/// The range of a name that can be changed; or why it cannot.
+/// The range of a name that can be changed, or the reason why it cannot be changed.
 pub fn renamable(view: &View, offset: usize) -> Result<Range, String> {
-    let mark = view.mark(offset).ok_or("no name stands here")?;
+    let mark = view.mark(offset).ok_or("there is no name here")?;
     match mark.what {
         What::Transition(_) => return Ok(view.range_of(mark)),
         What::Declared(id) | What::Reference(id) => own_name(view, id)?,
-        _ => return Err("only names of declarations, of `let`s and of transitions can be changed".into()),
+        _ => return Err("only the names of declarations, `let`s and transitions can be changed".into()),
     }
     Ok(view.range_of(mark))
 }
@@ -87,22 +87,22 @@ pub fn renamable(view: &View, offset: usize) -> Result<Range, String> {
 fn own_name(view: &View, id: ItemId) -> Result<(), String> {
     let files = &view.survey.files;
     if files.scopes[id.scope].library {
-        return Err("the standard library cannot be changed: extend the entry under a name of your own".into());
+        return Err("the standard library cannot be changed: declare your own name that extends the entry".into());
     }
     match files.declaration(id) {
-        Some(declaration) if declaration.name.is_none() => Err("it is called by its kind and has no other name".into()),
+        Some(declaration) if declaration.name.is_none() => Err("this declaration has no name except its kind".into()),
         _ => Ok(()),
     }
 }
 
-/// The edits that give what stands at an offset another name; or why it cannot have it.
+/// The edits that rename the item at an offset, or the reason why it cannot have the name.
 pub fn rename(view: &View, neighbours: &[Neighbour], offset: usize, name: &str) -> Result<WorkspaceEdit, String> {
     renamable(view, offset)?;
     legal(name)?;
     if let Some(id) = item(view, offset)
         && view.survey.files.named(id.scope, name).is_some_and(|other| other != id)
     {
-        return Err(format!("`{name}` is declared already"));
+        return Err(format!("`{name}` is already declared"));
     }
     let mut changes: HashMap<Url, Vec<TextEdit>> = HashMap::new();
     for place in references(view, neighbours, offset) {
@@ -111,16 +111,16 @@ pub fn rename(view: &View, neighbours: &[Neighbour], offset: usize, name: &str) 
     Ok(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() })
 }
 
-/// Words that mean something of their own in every value.
+/// Reserved words of the language.
 const TAKEN: [&str; 10] = ["use", "let", "as", "per", "none", "auto", "yes", "no", "rest", "all"];
 
 fn legal(name: &str) -> Result<(), String> {
     let letters = name.starts_with(|c: char| c.is_ascii_alphabetic());
     if !letters || !name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') {
-        return Err(format!("`{name}` is no name: write a letter first, then letters, digits and `_`"));
+        return Err(format!("`{name}` is not a valid name: write a letter first, then letters, digits and `_`"));
     }
     if TAKEN.contains(&name) {
-        return Err(format!("`{name}` is a word of the language, it cannot be a name"));
+        return Err(format!("`{name}` is a word of the language and cannot be a name"));
     }
     Ok(())
 }

@@ -1,5 +1,5 @@
-//! The protocol: one thread answers requests in their order, and works out diagnostics when nothing more has come in, so that only the
-//! newest text is looked at however fast somebody types.
+//! The protocol: one thread answers requests in their order. It computes diagnostics when no message is waiting, so
+//! that only the newest text is checked during fast typing.
 
 use super::session::Session;
 use super::tokens::legend;
@@ -24,13 +24,13 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What the server is started with.
+/// Settings of the server.
 pub struct Settings {
-    /// A folder of its own, where the standard library is laid down to be looked at.
+    /// A folder for the files of the standard library.
     pub library: PathBuf,
 }
 
-/// Speaks with an editor over standard input and output until it says goodbye; or says what went wrong.
+/// Serves an editor over standard input and output until it shuts the server down. Fails with a message.
 pub fn serve_stdio(settings: Settings) -> Result<(), String> {
     let (connection, threads) = Connection::stdio();
     serve(&connection, settings)?;
@@ -38,7 +38,7 @@ pub fn serve_stdio(settings: Settings) -> Result<(), String> {
     threads.join().map_err(|error| error.to_string())
 }
 
-/// The same over any connection.
+/// Serves an editor over any connection.
 pub fn serve(connection: &Connection, settings: Settings) -> Result<(), String> {
     let (id, params) = connection.initialize_start().map_err(|error| error.to_string())?;
     let params: InitializeParams = serde_json::from_value(params).map_err(|error| error.to_string())?;
@@ -48,7 +48,7 @@ pub fn serve(connection: &Connection, settings: Settings) -> Result<(), String> 
     });
     connection.initialize_finish(id, about).map_err(|error| error.to_string())?;
     let sender = connection.sender.clone();
-    // a client that is gone reads nothing more, and the loop below ends
+    // a disconnected client reads nothing more, and the loop below ends
     let board = Board::new(Arc::new(move |message| drop(sender.send(message))));
     let mut session = Session::new(settings.library, roots(&params), board);
     while let Some(message) = next(connection, &mut session) {
@@ -67,7 +67,7 @@ pub fn serve(connection: &Connection, settings: Settings) -> Result<(), String> 
     Ok(())
 }
 
-/// The next message; while there is none, diagnostics are worked out. `None` when the client is gone.
+/// The next message; diagnostics are computed while there is none. `None` when the client has disconnected.
 fn next(connection: &Connection, session: &mut Session) -> Option<Message> {
     while session.is_stale() {
         match connection.receiver.try_recv() {
@@ -80,7 +80,7 @@ fn next(connection: &Connection, session: &mut Session) -> Option<Message> {
 
 fn roots(params: &InitializeParams) -> Vec<PathBuf> {
     let folders = params.workspace_folders.iter().flatten().map(|folder| folder.uri.clone());
-    #[allow(deprecated, reason = "what clients send that know no workspace folders")]
+    #[allow(deprecated, reason = "sent by clients without workspace folders")]
     let root = params.root_uri.clone();
     let folders: Vec<PathBuf> = folders.filter_map(|uri| uri.to_file_path().ok()).collect();
     if folders.is_empty() { root.and_then(|uri| uri.to_file_path().ok()).into_iter().collect() } else { folders }
@@ -134,14 +134,14 @@ fn notice(session: &mut Session, notification: Notification) {
     }
 }
 
-/// Reads what a notification says; one that cannot be read has no answer to tell it.
+/// Reads a notification; one that cannot be read is ignored, because notifications have no response.
 fn heard<N: lsp_types::notification::Notification>(notification: Notification, act: impl FnOnce(N::Params)) {
     if let Ok(params) = notification.extract::<N::Params>(N::METHOD) {
         act(params);
     }
 }
 
-/// The drawing of a scene, which no standard request asks for.
+/// The drawing of a scene, a request that is not in the standard protocol.
 enum Draw {}
 
 #[derive(Serialize, Deserialize)]
@@ -195,7 +195,7 @@ fn answer(session: &mut Session, request: Request) -> Response {
     }
 }
 
-/// Requests about a whole document, or a part of it.
+/// Requests about a document or a part of it.
 fn answer_of_document(session: &mut Session, request: Request) -> Response {
     match request.method.as_str() {
         DocumentSymbolRequest::METHOD => reply::<DocumentSymbolRequest>(request, |p| {
@@ -207,7 +207,7 @@ fn answer_of_document(session: &mut Session, request: Request) -> Response {
             Ok(Some(SemanticTokensResult::Tokens(SemanticTokens { result_id: None, data })))
         }),
         CodeActionRequest::METHOD => reply::<CodeActionRequest>(request, |p| {
-            // what the newest text has, should its diagnostics still be wanted
+            // the diagnostics of the newest text are needed
             while session.is_stale() {
                 session.refresh();
             }
@@ -225,13 +225,13 @@ fn answer_of_document(session: &mut Session, request: Request) -> Response {
             Ok(Drawing { svg, problem })
         }),
         method => {
-            let message = format!("`{method}` is not known here");
+            let message = format!("`{method}` is not supported");
             Response::new_err(request.id, ErrorCode::MethodNotFound as i32, message)
         }
     }
 }
 
-/// Reads what a request says, and makes its answer a response.
+/// Reads a request, and makes a response from its result.
 fn reply<R: lsp_types::request::Request>(
     request: Request,
     act: impl FnOnce(R::Params) -> Result<R::Result, String>,
@@ -248,8 +248,10 @@ where
         Err(ExtractError::JsonError { error, .. }) => {
             Response::new_err(id, ErrorCode::InvalidParams as i32, error.to_string())
         }
-        Err(ExtractError::MethodMismatch(_)) => {
-            Response::new_err(id, ErrorCode::InternalError as i32, "a request came to the wrong place".into())
-        }
+        Err(ExtractError::MethodMismatch(_)) => Response::new_err(
+            id,
+            ErrorCode::InternalError as i32,
+            "internal error: a request was sent to the wrong handler".into(),
+        ),
     }
 }

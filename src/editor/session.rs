@@ -1,4 +1,4 @@
-//! The documents that are open, and the answers to what is asked of them.
+//! The open documents, and the answers to requests about them.
 
 use super::files::{Beside, OpenTexts, Places, Trees};
 use super::positions::Lines;
@@ -26,26 +26,26 @@ struct Document {
     lines: Lines,
     version: i32,
     path: Option<PathBuf>,
-    /// All that is known of it, computed when something asks.
+    /// The analysed text, computed on request.
     view: Option<Rc<View>>,
 }
 
-/// Everything that an editor has open.
+/// All open documents of an editor.
 pub struct Session {
     documents: BTreeMap<Url, Document>,
     trees: Arc<Trees>,
-    /// Where the standard library is laid down.
+    /// Folder of the files of the standard library.
     library: PathBuf,
     /// Folders of the workspace.
     roots: Vec<PathBuf>,
-    /// Documents whose diagnostics are to be computed anew.
+    /// Documents whose diagnostics must be computed again.
     stale: BTreeSet<Url>,
     board: Board,
     worker: Worker,
 }
 
 impl Session {
-    /// Begins without a document.
+    /// Starts without documents.
     pub fn new(library: PathBuf, roots: Vec<PathBuf>, board: Board) -> Session {
         let worker = Worker::start(board.clone());
         let (documents, stale) = (BTreeMap::new(), BTreeSet::new());
@@ -66,7 +66,7 @@ impl Session {
         self.board.close(address);
     }
 
-    /// Takes edits in their order; one without a range is the whole text.
+    /// Applies edits in their order; an edit without a range replaces the whole text.
     pub fn edit(&mut self, address: &Url, version: i32, changes: &[TextDocumentContentChangeEvent]) {
         let Some(document) = self.documents.get_mut(address) else { return };
         let mut moved = self.board.shown(address).of_plan;
@@ -87,7 +87,7 @@ impl Session {
         self.changed(address);
     }
 
-    /// A document has another text: what is known of it, and of those that use it, is to be computed anew.
+    /// Marks a document with a new text, and the documents that use it, for a new analysis.
     fn changed(&mut self, address: &Url) {
         let path = self.documents.get(address).and_then(|document| document.path.clone());
         for (other, document) in &mut self.documents {
@@ -105,7 +105,7 @@ impl Session {
         }
     }
 
-    /// A file has changed outside of the editor.
+    /// Marks all documents after a file has changed outside the editor.
     pub fn changed_on_disk(&mut self) {
         for (address, document) in &mut self.documents {
             document.view = None;
@@ -124,7 +124,7 @@ impl Session {
         let checked = &view.survey.checked;
         let mut found = diagnostics::shown(&checked.diagnostics, &checked.sources, &view.places);
         let version = self.documents.get(&address).map_or(0, |document| document.version);
-        // the plan is asked again by the worker; until it answers, what it said holds
+        // the worker computes the plan again; until then its last diagnostics stay
         let of_plan = if checked.sound { self.board.shown(&address).of_plan } else { Vec::new() };
         found.extend(of_plan.iter().cloned());
         self.board.show(&address, Shown { version, diagnostics: found, of_plan }, false);
@@ -135,13 +135,13 @@ impl Session {
         }
     }
 
-    /// The texts that are open.
+    /// The open texts.
     fn open_texts(&self) -> OpenTexts {
         let texts = self.documents.values();
         Arc::new(texts.filter_map(|d| Some((d.path.clone()?, d.text.clone()))).collect())
     }
 
-    /// What a document is called in messages, and where its modules lie.
+    /// The name of a document in messages, and its modules.
     fn around(&self, address: &Url) -> (String, Beside) {
         let path = self.documents.get(address).and_then(|document| document.path.as_deref());
         self.around_file(path, address)
@@ -154,7 +154,7 @@ impl Session {
         (name, Beside { folder, open: self.open_texts(), trees: self.trees.clone() })
     }
 
-    /// All that is known of a document.
+    /// The analysed text of a document.
     pub fn view(&mut self, address: &Url) -> Option<Rc<View>> {
         let document = self.documents.get(address)?;
         if let Some(view) = &document.view {
@@ -234,7 +234,7 @@ impl Session {
         self.view(address).map_or_else(Vec::new, |view| actions::actions(&view, &shown, range))
     }
 
-    /// The scene as a picture; or why there is none.
+    /// The drawing of the scene, or the reason why there is none.
     pub fn drawing(&mut self, address: &Url) -> Result<String, String> {
         let document = self.documents.get(address).ok_or("the file is not open")?;
         let (name, modules) = self.around(address);
@@ -243,11 +243,11 @@ impl Session {
         match compiled.scenario.filter(|_| !errors) {
             Some(scenario) => Ok(drawing_svg(&scenario)),
             None if errors => Err("the scene has errors".into()),
-            None => Err("there is nothing to draw: the scene is not complete, or the file has no `track`".into()),
+            None => Err("no drawing: the scene is not complete, or the file has no `track`".into()),
         }
     }
 
-    /// The other scenes of the workspace, as far as they could use a file of this one.
+    /// The other scenes of the workspace that may use a file of this scene.
     fn neighbours(&self, view: &View) -> Vec<Neighbour> {
         let mut roots = self.roots.clone();
         roots.extend(view.places.folder.clone().filter(|folder| !roots.iter().any(|root| folder.starts_with(root))));
@@ -269,7 +269,7 @@ impl Session {
             Some(text) => text.to_string(),
             None => syntax::decode(&name, &std::fs::read(file).ok()?).ok()?,
         };
-        // without a module of its own it names nothing of this scene
+        // a file without `use` refers to nothing in this scene
         if !text.lines().any(|line| line.trim_start().starts_with("use ")) {
             return None;
         }
@@ -279,11 +279,11 @@ impl Session {
     }
 }
 
-/// More than a workspace of scenes has.
+/// Largest number of files, more than a workspace of scenes has.
 const MOST_FILES: usize = 400;
 const DEEPEST: usize = 6;
 
-/// The `.track` files below a folder, links and hidden folders left out.
+/// The `.track` files below a folder, without links and hidden folders.
 fn track_files(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     let mut entries: Vec<_> = entries.flatten().collect();
@@ -300,7 +300,7 @@ fn track_files(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// Moves diagnostics below an edit by as many lines as it adds or takes.
+/// Moves diagnostics below an edit by the number of lines that it adds or removes.
 fn shift(diagnostics: &mut [Diagnostic], range: Range, text: &str) {
     let added = text.matches('\n').count() as i64 - i64::from(range.end.line - range.start.line.min(range.end.line));
     let moved = |line: u32| (i64::from(line) + added).max(0) as u32;

@@ -1,4 +1,4 @@
-//! Semantic colours: what each word is, where a grammar of patterns sees only words.
+//! Semantic colours: the meaning of each word, which a grammar of patterns does not know.
 
 use super::marks::{Marks, What};
 use super::view::View;
@@ -20,10 +20,10 @@ const TYPES: [SemanticTokenType; 11] = [
     SemanticTokenType::COMMENT,
 ];
 
-/// What units are: nothing in the protocol is called so.
+/// The type of units, which has no standard name in the protocol.
 const UNIT: u32 = 11;
 
-/// The legend that the client is given.
+/// The legend for the client.
 pub fn legend() -> SemanticTokensLegend {
     let types = TYPES.into_iter().chain([SemanticTokenType::new("unit")]).collect();
     SemanticTokensLegend { token_types: types, token_modifiers: vec![SemanticTokenModifier::DECLARATION] }
@@ -37,7 +37,7 @@ struct Part {
     declares: bool,
 }
 
-/// The colours of a text, each part from the one before it, as the protocol wants it.
+/// The colours of a text, each relative to the previous one, as the protocol requires.
 pub fn colours(view: &View) -> Vec<SemanticToken> {
     let mut parts = of_marks(&view.marks);
     parts.extend(of_tokens(&view.text));
@@ -84,7 +84,7 @@ fn of_marks(marks: &Marks) -> Vec<Part> {
     marks.0.iter().map(part).collect()
 }
 
-/// Keywords and comments, which are no words of the tree.
+/// Keywords and comments, which are not words of the tree.
 fn of_tokens(text: &str) -> Vec<Part> {
     let all = tokens(text);
     let mut parts = Vec::new();

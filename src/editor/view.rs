@@ -1,4 +1,4 @@
-//! One text as it is at this moment, with all that is known of it: what every request looks at.
+//! One version of a text with its names and values: the input of every request.
 
 use super::files::Places;
 use super::marks::{Mark, Marks};
@@ -20,7 +20,7 @@ pub struct View {
 }
 
 impl View {
-    /// Reads a text that a person calls `name`.
+    /// Reads a text with the name `name` in messages.
     pub fn new(name: &str, text: Arc<str>, modules: &dyn Modules, places: Places) -> View {
         let survey = survey(name, &text, modules);
         let marks = Marks::new(&survey.files, survey.files.main);

@@ -1,5 +1,5 @@
-//! What takes longer than a key: the plan of a sound scene and the physics rules over it, on a thread of its own. Only the newest text
-//! of a document is worth the work, and an answer that comes late is not shown.
+//! Longer computations in a separate thread: the plan of a valid scene, and the physics rules for it. Only the newest
+//! text of a document is computed, and a late result is not shown.
 
 use super::diagnostics::shown;
 use super::files::{Beside, Places};
@@ -15,16 +15,17 @@ use std::thread;
 /// Sends a message to the editor.
 pub type Send = Arc<dyn Fn(Message) + std::marker::Send + Sync>;
 
-/// What a document shows at this moment.
+/// The diagnostics that a document shows.
 #[derive(Default, Clone)]
 pub struct Shown {
     pub version: i32,
     pub diagnostics: Vec<Diagnostic>,
-    /// Those of them that only the plan tells.
+    /// Diagnostics that need the plan.
     pub of_plan: Vec<Diagnostic>,
 }
 
-/// What is shown of every document: both threads show only while they hold it, so that nothing old comes last.
+/// The shown diagnostics of every document. Both threads send only while they hold it, so that old diagnostics never
+/// come last.
 #[derive(Clone)]
 pub struct Board {
     documents: Arc<Mutex<BTreeMap<Url, Shown>>>,
@@ -32,22 +33,22 @@ pub struct Board {
 }
 
 impl Board {
-    /// Nothing is shown yet.
+    /// Starts without diagnostics.
     pub fn new(send: Send) -> Board {
         Board { documents: Arc::default(), send }
     }
 
-    // a panic elsewhere leaves the map whole: entries are put into it finished
+    // a panic elsewhere leaves the map valid: only finished entries are put into it
     fn documents(&self) -> MutexGuard<'_, BTreeMap<Url, Shown>> {
         self.documents.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What is shown of a document.
+    /// The shown diagnostics of a document.
     pub fn shown(&self, address: &Url) -> Shown {
         self.documents().get(address).cloned().unwrap_or_default()
     }
 
-    /// Shows the diagnostics of a document; those of a plan only where the document is still as it was.
+    /// Shows the diagnostics of a document; diagnostics of a plan only if the document has not changed.
     pub fn show(&self, address: &Url, shown: Shown, late: bool) {
         let mut documents = self.documents();
         if late && documents.get(address).is_none_or(|known| known.version != shown.version) {
@@ -57,14 +58,14 @@ impl Board {
         documents.insert(address.clone(), shown);
     }
 
-    /// Notes where what the plan said stands after an edit.
+    /// Stores the moved diagnostics of the plan after an edit.
     pub fn keep(&self, address: &Url, of_plan: Vec<Diagnostic>) {
         if let Some(shown) = self.documents().get_mut(address) {
             shown.of_plan = of_plan;
         }
     }
 
-    /// Shows nothing more of a document.
+    /// Removes the diagnostics of a document.
     pub fn close(&self, address: &Url) {
         let mut documents = self.documents();
         documents.remove(address);
@@ -77,7 +78,7 @@ impl Board {
     }
 }
 
-/// A text to be compiled.
+/// A text to compile.
 pub struct Job {
     pub address: Url,
     pub version: i32,
@@ -93,16 +94,16 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// Starts it. It ends with the program: nothing that it does outlives its answer.
+    /// Starts the thread. It ends with the program; it has no state to save.
     pub fn start(board: Board) -> Worker {
         let (jobs, received) = mpsc::channel();
         thread::spawn(move || work(&received, &board));
         Worker { jobs }
     }
 
-    /// Gives it a text.
+    /// Sends a text to the thread.
     pub fn compile(&self, job: Job) {
-        // a worker that is gone has ended by a panic: the diagnostics of the check are shown all the same
+        // if the worker has panicked, the diagnostics of the check are still shown
         let _ = self.jobs.send(job);
     }
 }

@@ -1,4 +1,4 @@
-//! A scene as a program uses it: a text, edits by path, a run, in memory.
+//! A scene for use in programs: a text, edits by path, and a run in memory.
 
 use crate::check::{self, Folder, Modules, Override};
 use crate::compile::{Compiled, compile, fingerprint};
@@ -56,7 +56,7 @@ impl Scene {
         Scene { name: "scene.track".into(), text: text.into(), modules, edits: Vec::new() }
     }
 
-    /// A scene in a file; its modules and data lie below the folder of that file.
+    /// A scene in a file; its modules and data lie in the folder of the file or below it.
     pub fn open(path: impl AsRef<Path>) -> Result<Scene, Stopped> {
         let path = path.as_ref();
         let name = path.display().to_string();
@@ -68,41 +68,41 @@ impl Scene {
         Ok(Scene { name, text, modules: Rc::new(folder), edits: Vec::new() })
     }
 
-    /// With files beside it that stand in memory, by their paths: `site/gravel.track`, `level.csv`.
+    /// Adds files in memory beside the main file, by their paths: `site/gravel.track`, `level.csv`.
     pub fn with_files<P: Into<PathBuf>, B: Into<Vec<u8>>>(self, files: impl IntoIterator<Item = (P, B)>) -> Scene {
         let files = files.into_iter().map(|(path, bytes)| (path.into(), bytes.into())).collect();
         Scene { modules: Rc::new(InMemory(files)), ..self }
     }
 
-    /// With the name by which messages call it.
+    /// Sets the name of the scene in messages.
     pub fn named(self, name: impl Into<String>) -> Scene {
         Scene { name: name.into(), ..self }
     }
 
-    /// Replaces the value at a path for this scene; the file stays as it is. Example: `open.pad.stiffness` and `60 MN/m`.
-    /// A path may also be the name of a `let`.
+    /// Replaces the value at a path for this scene; the file stays as it is. Example: `open.pad.stiffness` and
+    /// `60 MN/m`. A path may also be the name of a `let`.
     pub fn set(mut self, path: impl Into<String>, value: impl Into<String>) -> Scene {
         self.edits.push(Override { path: path.into(), value: value.into() });
         self
     }
 
-    /// Everything that is to be said of it, and its scenario and solver graph where it has them. Costs milliseconds.
+    /// Checks the scene: its diagnostics, and its scenario and solver graph if there are no errors. Takes milliseconds.
     pub fn check(&self) -> Compiled {
         compile(&self.name, &self.text, &*self.modules, &self.edits)
     }
 
-    /// The scene as one file, with every default and library value and where it comes from; `None` where it has errors.
+    /// The scene as one file, with every default and library value and its source; `None` if it has errors.
     pub fn resolve(&self) -> Option<String> {
         check::resolve(&self.name, &self.text, &*self.modules, &self.edits)
     }
 
-    /// Runs it in memory; beds of grains are packed anew.
+    /// Runs the scene in memory; beds of grains are packed again.
     pub fn run(&self) -> Result<Run, Stopped> {
         self.run_with(&Executor::default(), &mut ())
     }
 
-    /// Runs it with beds that are kept, or nodes of one's own, and tells a listener what happens. A listener that ends the run leaves
-    /// what there is.
+    /// Runs the scene with stored beds or user-defined nodes, and reports to a listener. If the listener ends the run,
+    /// the results so far remain.
     pub fn run_with(&self, executor: &Executor, listener: &mut dyn Listener) -> Result<Run, Stopped> {
         let compiled = self.check().to_run();
         let refused = || Stopped::refused(compiled.diagnostics.clone(), &compiled.sources);
@@ -121,20 +121,20 @@ impl Scene {
     }
 }
 
-/// Why there is no run. It shows itself as the command line would.
+/// The reason why there is no run. It displays like the command line.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Stopped {
     /// The file cannot be read.
     NotRead(String),
-    /// The scene has mistakes, cannot be run yet, or its run failed.
+    /// The scene has errors, this version cannot run it, or its run failed.
     Refused {
         diagnostics: Vec<Diagnostic>,
-        /// The same, drawn over the text.
+        /// The diagnostics as text, with excerpts of the scene.
         shown: String,
     },
 }
 
-/// Columns of what an error shows.
+/// Width of a displayed error, columns.
 const WIDTH: usize = 110;
 
 impl Stopped {

@@ -1,21 +1,22 @@
-//! Which trains run between two exchanges: whole trains, up to the next stop, in the order and directions of the traffic.
+//! Trains that run between two exchanges: whole trains, up to the next stop, in the order and directions of the
+//! traffic.
 
 use super::{Block, Blocks, PassagePlan, Runner, Runs, Tamping, Train, Update};
 use crate::solvers::track::Direction;
 
-/// Parts into which a block of unlike trains is divided when it settles the track: within a part they run one kind after the
-/// other, so that the order of the trains is kept to within a sixteenth of the block.
+/// Number of parts into which a block of different trains is divided when the track settles. Within a part one kind of
+/// train runs after the other, so the order of the trains is kept to within a sixteenth of the block.
 const PARTS: u64 = 16;
 
 /// Passages over the track at an axle count.
 pub struct Due {
     pub passages: Vec<Runner>,
-    /// Those of them that are recorded: one of each kind of train, the leading one first; none where nothing is.
+    /// Recorded passages: one for each kind of train, the leading kind first; empty if nothing is recorded.
     pub shown: Vec<Runner>,
 }
 
 impl Blocks {
-    /// A kind of train, and how its passages are integrated; 0 leads the traffic.
+    /// A kind of train with its passage plan; 0 is the leading kind.
     pub fn kind(&self, kind: usize) -> (&Train, &PassagePlan) {
         match kind.checked_sub(1).and_then(|other| self.others.get(other)) {
             Some((train, plan)) => (train, plan),
@@ -28,7 +29,7 @@ impl Blocks {
         std::iter::once((&self.train, &self.passage)).chain(self.others.iter().map(|(train, plan)| (train, plan)))
     }
 
-    /// The tolerance and the cap of the settlement of a block, m, where blocks are as long as their error allows.
+    /// The tolerance and the cap of the settlement of a block, m, if blocks are adaptive.
     pub fn adaptive(&self) -> Option<(f64, Option<f64>)> {
         match self.update {
             Update::Adaptive { tolerance, cap } if self.share => Some((tolerance, cap)),
@@ -44,18 +45,18 @@ impl Blocks {
             .collect()
     }
 
-    /// Trains that have passed when so many axles have.
+    /// Number of trains that have passed after `axles` axles.
     fn position(&self, axles: u64) -> u64 {
         self.sequence.within(axles)
     }
 
-    /// What is tamped when so many axles have passed.
+    /// Tampings after `axles` axles.
     pub fn tamped_after(&self, axles: u64) -> impl Iterator<Item = &Tamping> {
         self.tampings.iter().filter(move |tamping| tamping.after.contains(&axles))
     }
 
-    /// The next axle count at which a block ends: something is recorded or done to the track there, or another kind of
-    /// train begins, or the run ends.
+    /// The next axle count at which a block ends: at a record, at a tamping, at the start of another kind of train, or
+    /// at the end of the run.
     pub fn stop(&self, before: u64) -> u64 {
         self.stops.get(self.stops.partition_point(|count| *count <= before)).copied().unwrap_or(self.total)
     }
@@ -65,7 +66,7 @@ impl Blocks {
         self.position(self.stop(before)) - self.position(before)
     }
 
-    /// Trains that the policy wants to send next, where it knows without a look at forces.
+    /// Number of trains in the next block by the policy, if the policy does not depend on forces.
     pub fn wanted(&self, before: u64) -> Option<u64> {
         if !self.share {
             return Some(1);
@@ -75,7 +76,7 @@ impl Blocks {
         Some(wanted.max(1).min(self.trains_left(before)))
     }
 
-    /// A block of so many trains after `before` axles.
+    /// A block of `trains` trains after `before` axles.
     pub fn block(&self, before: u64, trains: u64) -> Block {
         let position = self.position(before);
         let (begun, done) = (self.sequence.counts(position), self.sequence.counts(position + trains));
@@ -85,7 +86,7 @@ impl Blocks {
             let forward = match train.runs {
                 Runs::Forward => end - first,
                 Runs::Backward => 0,
-                // the first of every two trains goes forward
+                // the first of every two trains runs forward
                 Runs::BothWays => end.div_ceil(2) - first.div_ceil(2),
             };
             let of = |direction, trains| (Runner { kind, direction }, trains);
@@ -96,12 +97,12 @@ impl Blocks {
         Block { before, axles, runs }
     }
 
-    /// The block that begins after so many axles; one train where nobody knows its length before its forces.
+    /// The block that begins after `before` axles; one train if the length of the block depends on forces.
     pub fn next_block(&self, before: u64) -> Block {
         self.block(before, self.wanted(before).unwrap_or(1))
     }
 
-    /// The passages over the track after so many axles, where the next block is expected to have so many trains.
+    /// The passages over the track after `axles` axles; `trains` is the expected number of trains in the next block.
     pub fn due(&self, axles: u64, trains: u64) -> Due {
         let adaptive = self.adaptive().is_some();
         let mut passages = if axles == self.total {
@@ -117,7 +118,8 @@ impl Blocks {
         Due { passages, shown }
     }
 
-    /// The passages that a record shows: one of each kind of train, in its leading direction unless only the other one runs.
+    /// The recorded passages: one for each kind of train, in its leading direction unless only the other direction
+    /// runs.
     fn shown(&self, passages: &[Runner]) -> Vec<Runner> {
         let of = |leading: Runner| {
             let mut same = passages.iter().filter(|runner| runner.kind == leading.kind);
@@ -127,7 +129,7 @@ impl Blocks {
         self.leading().into_iter().map(of).collect()
     }
 
-    /// A block in parts that keep the order of its trains.
+    /// Divides a block into parts that keep the order of its trains.
     pub fn parts(&self, block: &Block) -> Vec<Block> {
         let trains = block.trains();
         let mixed = block.runs.iter().any(|(runner, _)| runner.kind != block.runs[0].0.kind);
@@ -144,7 +146,7 @@ impl Blocks {
         (0..parts).map(part).collect()
     }
 
-    /// The blocks of a run whose policy needs no forces; `None` for an adaptive one.
+    /// The blocks of a run whose policy does not depend on forces; `None` for an adaptive policy.
     pub fn planned(&self) -> Option<Vec<Block>> {
         let mut blocks = Vec::new();
         let mut before = 0;
@@ -156,7 +158,8 @@ impl Blocks {
         Some(blocks)
     }
 
-    /// The same traffic, led by another kind of train: what is true of the leading train is asked of each so.
+    /// The same traffic with another leading kind of train, so that results for the leading train can be asked for each
+    /// kind.
     pub fn led_by(&self, kind: usize) -> Blocks {
         let mut blocks = self.clone();
         let Some(other) = kind.checked_sub(1).filter(|other| *other < blocks.others.len()) else { return blocks };
@@ -172,12 +175,12 @@ impl Block {
         self.runs.iter().map(|(_, trains)| trains).sum()
     }
 
-    /// Trains of all kinds that run so.
+    /// Number of trains of all kinds in a direction.
     pub fn towards(&self, direction: Direction) -> u64 {
         self.runs.iter().filter(|(runner, _)| runner.direction == direction).map(|(_, trains)| trains).sum()
     }
 
-    /// Passages that stand for its trains.
+    /// The passages that represent its trains.
     pub fn runners(&self) -> Vec<Runner> {
         self.runs.iter().map(|(runner, _)| *runner).collect()
     }

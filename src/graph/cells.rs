@@ -1,61 +1,62 @@
-//! Periodic cells of grains, each under the forces of its own sleepers: the nodes of tier `cells`.
+//! Periodic cells of grains, each under the forces of its own sleepers: the node of tier `cells`.
 
 use super::{BedPlan, SleeperOnGrains};
 use crate::solvers::granular::rig::{Crib, Glued};
 use serde::{Deserialize, Serialize};
 
-/// A cell of grains for each sleeper that is loaded otherwise than the others.
+/// A cell of grains for each distinct sleeper.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CellsNode {
-    /// Each once: sections with equal layers share one.
+    /// Different beds; sections with equal layers share a bed.
     pub beds: Vec<BedPlan>,
     pub cells: Vec<CellPlan>,
-    /// The cell that answers for each seat; `None` for a seat without grains below.
+    /// Index of the cell of each seat; `None` for a seat without grains.
     pub cell_of: Vec<Option<usize>>,
-    /// What a cell takes from the track that answers for a seat alone; `None` for a seat without grains below.
+    /// Data from the track for a cell of this seat alone; `None` for a seat without grains.
     pub seats: Vec<Option<SeatOnCell>>,
     /// Settlement of every seat of the track at the start, m.
     pub settlement: Vec<f64>,
-    /// Time between the fronts of trains that follow each other closely, s; `None` lets the track come to rest between them.
+    /// Time between the fronts of two trains that follow each other, s; `None` if the track comes to rest between
+    /// trains.
     pub headway_time: Option<f64>,
-    /// Damping of a support over its stiffness, s.
+    /// Damping / stiffness of a support, s.
     pub damping_time: f64,
-    /// m/s^2.
+    /// Gravitational acceleration, m/s^2.
     pub gravity: f64,
-    /// Time step of the grains, s; `None` is the longest for which `added_inertia` suffices.
+    /// Time step of the grains, s; `None` for the longest step that `added_inertia` allows.
     pub time_step: Option<f64>,
-    /// Share of the mass of a bed that may be added as inertia for the sake of a longer step.
+    /// Largest added inertia / mass of a bed; added inertia allows a longer step.
     pub added_inertia: f64,
-    /// Error of the settlement of a cell, over the largest settlement or the compression under the train, at which the other trains of a
-    /// block are not computed; 0 computes all.
+    /// Error of the settlement of a cell / largest settlement or compression under the train, below which the other
+    /// trains of a block are not computed; 0 computes all trains.
     pub tolerance: f64,
 }
 
-/// A seat that may get a cell of its own on the way, where trains load it otherwise than the seats that it shares one with.
+/// A seat that may get its own cell during the run, if its load differs from the load of the seats that share its cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SeatOnCell {
     /// Chainage, m.
     pub x: f64,
     /// Seats whose forces load the bays of its cell, from left to right.
     pub loaded_by: Vec<usize>,
-    /// Whether every wheel of a train comes from far before it and runs on far behind it.
+    /// Whether every wheel of a train starts far before the seat and stops far behind it.
     pub passed: bool,
 }
 
-/// One bay or some, without an end along the track.
+/// One or several bays, periodic along the track.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CellPlan {
     /// Index into [`CellsNode::beds`].
     pub bed: usize,
-    /// Chainage of the sleeper whose answers are taken, m.
+    /// Chainage of the sleeper whose results are used, m.
     pub x: f64,
     /// Cells of the bed side by side.
     pub copies: u32,
-    /// From left to right; each is loaded by the forces of its seat.
+    /// Sleepers from left to right; each has the forces of its seat.
     pub sleepers: Vec<SleeperOnGrains>,
-    /// The sleeper whose answers are taken.
+    /// Index of the sleeper whose results are used.
     pub middle: usize,
-    /// Stiffness of the soil under it, N/m; `None` where the grains lie on rock.
+    /// Stiffness of the soil under this sleeper, N/m; `None` if the grains lie on a rigid base.
     pub soil: Option<f64>,
     /// Grains between and beside the sleepers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -73,13 +74,13 @@ impl CellPlan {
 }
 
 impl CellsNode {
-    /// How many seats a cell answers for.
+    /// Number of seats that use a cell.
     pub fn seats_of(&self, cell: usize) -> usize {
         self.cell_of.iter().filter(|of| **of == Some(cell)).count()
     }
 }
 
-/// Seats in groups whose values are no farther apart than this, the values growing from group to group and within each.
+/// Groups of seats whose values differ by at most `apart`; the values ascend from group to group and within each group.
 pub fn seats_alike(mut seats: Vec<(f64, usize)>, apart: f64) -> Vec<Vec<(f64, usize)>> {
     seats.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut groups: Vec<Vec<(f64, usize)>> = Vec::new();

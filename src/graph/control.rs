@@ -1,36 +1,38 @@
-//! How long the next block is: the choice of an ODE solver, with the settlement of a block as its step.
+//! Length of the next block: step control as in an ODE solver, with the settlement of a block as the step.
 //!
-//! Forces change because the track settles, and settlement slows down as axles pass: a block is therefore measured by the
-//! largest settlement that it makes at any seat, the `aim`, and the axles follow from the law. The error of an exchange
-//! with the forces of the start grows with the square of that settlement, which gives the next aim from the last error.
+//! Forces change because the track settles, and settlement slows down with the number of axles. The control therefore
+//! chooses the largest settlement of a block at any seat, the `aim`, and the number of axles follows from the law. The
+//! error of a block with the forces of its start grows with the square of this settlement, which gives the next aim
+//! from the last error.
 
 use serde::{Deserialize, Serialize};
 
-/// What the choice remembers between two blocks.
+/// State of the control between two blocks.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Control {
-    /// Adaptive: settlement at which the next block aims, m; none before the first block, which is one train.
+    /// Adaptive: settlement that the next block aims at, m; `None` before the first block, which is one train.
     pub aim: Option<f64>,
-    /// Fixed and geometric: most trains of the next block, after a block that had to be shortened.
+    /// Fixed and geometric: largest number of trains in the next block, after a block that had to be shortened.
     pub limit: Option<u64>,
 }
 
-/// Share of the largest aim that the last error allows.
+/// Next aim / largest aim that the last error allows.
 const SAFETY: f64 = 0.9;
-/// An aim grows and falls by these factors at most from block to block.
+/// Largest factors by which the aim grows and falls from block to block.
 const GROWTH: f64 = 3.0;
 const FALL: f64 = 0.2;
 
 impl Control {
-    /// Takes the error of a block that settled `settled`; both m.
+    /// Sets the next aim from the error of a block with settlement `settled`; both m.
     pub fn learn(&mut self, error: f64, settled: f64, tolerance: f64, cap: Option<f64>) {
         let aim = self.aim.unwrap_or(settled);
         let allowed = if error > 0.0 { SAFETY * settled * (tolerance / error).sqrt() } else { f64::INFINITY };
         self.aim = Some(allowed.clamp(FALL * aim, GROWTH * aim).min(cap.unwrap_or(f64::INFINITY)));
     }
 
-    /// Trains of the next block of an adaptive policy, of `most` that may run: those that settle the aim, and two at least where
-    /// so many are `left` until the next stop. What is left is divided evenly where it would take two blocks.
+    /// Number of trains in the next block of an adaptive policy, at most `most`: the number that settles the aim, and
+    /// at least two if two are `left` until the next stop. If two blocks are needed for the trains that are left, the
+    /// blocks are equal.
     pub fn choose(&self, most: u64, left: u64, mut settled: impl FnMut(u64) -> f64) -> u64 {
         let Some(aim) = self.aim else { return left.min(2) };
         let trains = largest_within(aim, most, &mut settled).max(left.min(2));
@@ -39,28 +41,29 @@ impl Control {
         } else if left < 2 * trains {
             left.div_ceil(2)
         } else {
-            trains / 2 * 2 // so that the middle is one
+            trains / 2 * 2 // an even number has a middle
         }
     }
 
-    /// Most trains that a block of a fixed or geometric policy may have.
+    /// Largest number of trains in a block of a fixed or geometric policy.
     pub fn bounded(&self, wanted: u64) -> u64 {
         self.limit.map_or(wanted, |limit| wanted.min(limit))
     }
 
-    /// A block of so many trains had to be done again: in halves.
+    /// A block of `trains` trains must be repeated in halves.
     pub fn shorten(&mut self, trains: u64) {
         self.limit = Some(trains.div_ceil(2));
     }
 
-    /// A block of so many trains was accepted where `wanted` were asked for: the next one may be twice as long.
+    /// A block of `trains` trains was accepted, and `wanted` trains were asked for: the next block may be twice as
+    /// long.
     pub fn lengthen(&mut self, trains: u64, wanted: u64) {
         self.limit = self.limit.map(|_| 2 * trains).filter(|_| trains < wanted);
     }
 }
 
-/// The largest count from 1 to `most` for which `value`, which does not fall with the count, stays within `bound`; 1 where
-/// none does.
+/// The largest count from 1 to `most` for which `value` is at most `bound`; 1 if there is none. `value` must not fall
+/// with the count.
 fn largest_within(bound: f64, most: u64, mut value: impl FnMut(u64) -> f64) -> u64 {
     if most <= 1 || value(most) <= bound {
         return most.max(1);

@@ -1,33 +1,33 @@
-//! What passes decided, and what a run will take: the plan's own account of itself.
+//! Decisions of the passes, and the estimated cost of a run.
 
 use serde::{Deserialize, Serialize};
 
-/// What a pass did and why.
+/// A decision of a pass and its reason.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
     pub pass: String,
     pub what: String,
     pub why: String,
-    /// What was possible and not taken.
+    /// Alternatives that were not taken.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rejected: Vec<Rejected>,
 }
 
-/// A way that a pass did not take.
+/// An alternative that a pass did not take.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Rejected {
     pub what: String,
     pub why: String,
-    /// What it would have cost on two cores, s, where that is known.
+    /// Its cost on two cores, s, if known.
     pub seconds: Option<f64>,
 }
 
-/// What a run will take: an estimate from counts of unknowns and steps.
+/// Cost of a run: an estimate from the number of unknowns and steps.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
-    /// On one core, s.
+    /// Time on one core, s.
     pub seconds: f64,
-    /// On two cores, s; that of one core where a second one is not counted on.
+    /// Time on two cores, s; equal to the time on one core if the work is not parallel.
     pub seconds_on_two_cores: f64,
     pub bytes: u64,
     pub work: Work,
@@ -41,7 +41,7 @@ pub enum Work {
     Tests(TestWork),
 }
 
-/// Passages of trains. Blocks that are prescribed are counted as if none overshot.
+/// Passages of trains. The count assumes that no prescribed block overshoots.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct PassageWork {
     pub unknowns: usize,
@@ -52,21 +52,21 @@ pub struct PassageWork {
     pub steps: u64,
 }
 
-/// Tests of packed beds; good to a factor of two.
+/// Tests of packed beds; an estimate within a factor of two.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct TestWork {
     pub grains: f64,
     pub pebbles: f64,
-    /// s.
+    /// Time step, s.
     pub time_step: f64,
     pub packing_steps: f64,
-    /// Steps of the test, setting down included.
+    /// Steps of the test, including the setting down.
     pub test_steps: f64,
     pub packings: u32,
 }
 
 impl Cost {
-    /// The work of passages; none of a test.
+    /// The work of passages; zero for a test.
     pub fn passages(&self) -> PassageWork {
         match self.work {
             Work::Passages(work) => work,

@@ -1,4 +1,4 @@
-//! Nodes of grains: beds to pack, what stands on them, what loads them, and the soil below.
+//! Nodes of grains: beds to pack, bodies on the beds, their loads, and the soil below.
 
 use super::record::InVolume;
 use crate::solvers::continuum::Strength;
@@ -16,13 +16,15 @@ use std::fmt;
 pub struct BedPlan {
     /// The name of the trackform.
     pub section: String,
-    /// Complete but for the clumps of its layers, which take a tenth of a second to make: spheres stand in their place.
+    /// Complete recipe with spheres instead of the clumps of its layers, because clumps take a tenth of a second to
+    /// make.
     blank: Recipe,
-    /// Shapes of the grains of each layer, from the floor upwards; `None` are spheres.
+    /// Shapes of the grains of each layer, from the floor upwards; `None` for spheres.
     shapes: Vec<Option<ClumpShape>>,
-    /// The area by which its stiffness is felt: the footprint of half a sleeper, of a whole one in a bed of both rails.
+    /// The plate that measures the stiffness of the bed: the footprint of half a sleeper, or of a whole sleeper in a
+    /// bed of both rails.
     pub plate: Plate,
-    /// Decisions and their reasons, for people.
+    /// Decisions and their reasons as sentences.
     pub notes: Vec<String>,
 }
 
@@ -36,10 +38,10 @@ pub struct BedRecipe {
     pub notes: Vec<String>,
 }
 
-/// Why a plan gives no recipe.
+/// Reason why a plan gives no recipe.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BedError {
-    /// Pebbles that make no clump of the grains of a layer.
+    /// Pebbles that give no clumps for the grains of a layer.
     Templates { layer: String, cause: TemplatesError },
     /// A recipe that cannot be packed.
     Recipe(PackingError),
@@ -57,7 +59,7 @@ impl fmt::Display for BedError {
 impl std::error::Error for BedError {}
 
 impl BedPlan {
-    /// A plan from a recipe of spheres and the shapes of its grains, one a layer.
+    /// A plan from a recipe of spheres and the shapes of its grains, one shape for each layer.
     pub fn new(section: String, blank: Recipe, shapes: Vec<Option<ClumpShape>>, plate: Plate) -> BedPlan {
         BedPlan { section, blank, shapes, plate, notes: Vec::new() }
     }
@@ -67,12 +69,12 @@ impl BedPlan {
         self.blank == other.blank && self.shapes == other.shapes
     }
 
-    /// The numbers of the recipe; spheres stand in the place of its clumps.
+    /// The numbers of the recipe, with spheres instead of clumps.
     pub fn numbers(&self) -> &Recipe {
         &self.blank
     }
 
-    /// All that it takes to pack the bed of a seed.
+    /// The complete recipe for packing the bed with a seed.
     pub fn ready(&self, seed: u64) -> Result<BedRecipe, BedError> {
         let mut recipe = Recipe { seed, ..self.blank.clone() };
         for (layer, shape) in recipe.layers.iter_mut().zip(&self.shapes) {
@@ -93,15 +95,15 @@ impl BedPlan {
     }
 }
 
-/// A bed of grains with sleepers, or a plate, on it: it takes the forces of actuators at every step.
+/// A bed of grains with sleepers or a plate on it; it takes the forces of actuators at every step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BedNode {
     pub bed: BedPlan,
     /// Cells of the bed side by side.
     pub copies: u32,
-    /// What stands on the bed, from left to right.
+    /// Bodies on the bed, from left to right.
     pub bodies: Vec<StandingBody>,
-    /// Area of a plate over the whole bed in the place of sleepers, m2.
+    /// Area of a plate over the whole bed, if there is one instead of sleepers, m2.
     pub plate: Option<f64>,
     /// Grains between and beside the sleepers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -116,7 +118,7 @@ pub struct BedNode {
     /// m/s^2.
     pub gravity: f64,
     pub sensors: Vec<SensorNode>,
-    /// Share of the mass of the bed that may be added as inertia for the sake of a longer step.
+    /// Largest added inertia / mass of the bed; added inertia allows a longer step.
     pub added_inertia: f64,
 }
 
@@ -126,11 +128,11 @@ pub struct StandingBody {
     pub name: String,
     /// Chainage, m.
     pub x: f64,
-    /// Its middle along and across the bed, m.
+    /// Position of its middle along and across the bed, m.
     pub place: [f64; 2],
-    /// Along, across, height, m.
+    /// Size along and across the track, and height, m.
     pub size: [f64; 3],
-    /// The mass that the bed under it carries, kg.
+    /// Mass of the body that the bed carries, kg.
     pub mass: f64,
 }
 
@@ -140,19 +142,19 @@ pub struct SensorNode {
     pub name: String,
     /// Chainage, m.
     pub x: f64,
-    /// Along and across the bed, and below its top, m.
+    /// Position along and across the bed, and depth below its top, m.
     pub place: [f64; 3],
     pub volume: SensorVolume,
-    /// Length and width of the bed, m: the volume is cut there.
+    /// Length and width of the bed, m; the volume ends at its sides.
     pub bed: [f64; 2],
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SensorVolume {
-    /// m.
+    /// Radius, m.
     Sphere { radius: f64 },
-    /// m; across `None` is the whole bed.
+    /// Sizes, m; `across` is `None` for the whole width of the bed.
     Block { along: f64, across: Option<f64>, height: f64 },
 }
 
@@ -165,37 +167,38 @@ pub struct ActuatorsNode {
     pub cycles: u64,
 }
 
-/// The grains under a track: packed cells side by side in each window, sleepers on them, and springs under all other sleepers.
+/// The grains under a track: packed cells side by side in each window, sleepers on the grains, and springs under all
+/// other sleepers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GrainsNode {
-    /// Each once: sections with equal layers share one.
+    /// Different beds; sections with equal layers share a bed.
     pub beds: Vec<BedPlan>,
-    /// Chainages between which the scene wants grains, m.
+    /// Chainages between which the scene asks for grains, m.
     pub window: Vec<[f64; 2]>,
-    /// Where grains lie, from left to right; empty where a plan is only looked at.
+    /// Stretches of grains, from left to right; empty if the plan is only shown.
     pub stretches: Vec<GrainStretch>,
     /// Whether soil lies below.
     pub on_soil: bool,
-    /// Whether vehicles ride on the rail over the grains, so that nothing is exchanged between blocks.
+    /// Whether vehicles, rail and grains are computed together, without an exchange between blocks.
     pub ridden: bool,
     /// Settlement of every seat of the track at the start, m.
     pub settlement: Vec<f64>,
-    /// The pad under the sleeper of each seat of the track, where there is one.
+    /// The under sleeper pad of each seat of the track, if there is one.
     pub pads: Vec<Option<UnderPad>>,
-    /// Where the stiffness of supports is taken from.
+    /// Load from which the stiffness of supports is computed.
     pub stiffness_from: StiffnessFrom,
-    /// Distance from the front of a train to that of the next one that follows it closely, m; `None` lets the track come to rest between
+    /// Distance between the fronts of two trains that follow each other, m; `None` if the track comes to rest between
     /// trains.
     pub headway: Option<f64>,
-    /// Damping of a support over its stiffness, s.
+    /// Damping / stiffness of a support, s.
     pub damping_time: f64,
     /// m/s^2.
     pub gravity: f64,
-    /// Time step of the grains, s; `None` is the longest for which `added_inertia` suffices.
+    /// Time step of the grains, s; `None` for the longest step that `added_inertia` allows.
     pub time_step: Option<f64>,
-    /// Share of the mass of a bed that may be added as inertia for the sake of a longer step.
+    /// Largest added inertia / mass of a bed; added inertia allows a longer step.
     pub added_inertia: f64,
-    /// Where grains are recorded in passages.
+    /// Volumes in which passages are recorded.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub volumes: Vec<VolumeUnderTrack>,
 }
@@ -208,12 +211,12 @@ pub struct VolumeUnderTrack {
     pub seat: usize,
     pub stretch: usize,
     pub quantities: Vec<InVolume>,
-    /// Axle counts at which a passage is recorded, and the interval of what is recorded, s.
+    /// Axle counts at which a passage is recorded, and the sampling interval, s.
     pub after: Vec<u64>,
     pub every: f64,
 }
 
-/// From which loads grains say how stiff the support of a sleeper is.
+/// Load from which the support stiffness of the grains is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StiffnessFrom {
@@ -236,30 +239,31 @@ pub struct GrainStretch {
     /// Grains between and beside the sleepers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crib: Option<Crib>,
-    /// Layers whose grains are glued, all along or between places from its left end.
+    /// Layers whose grains are glued, over the whole length or between two distances from the left end.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub glued: Vec<Glued>,
 }
 
-/// A sleeper, or half of it, on grains.
+/// A sleeper, or half a sleeper, on grains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SleeperOnGrains {
     /// Index of its seat.
     pub seat: usize,
-    /// Its middle, from the left end of the stretch and from the side wall at the centre line, m.
+    /// Position of its middle, from the left end of the stretch and from the side wall at the centre line, m.
     pub place: [f64; 2],
-    /// Along, across, height, m.
+    /// Size along and across the track, and height, m.
     pub size: [f64; 3],
-    /// Mass of half of it, kg.
+    /// Mass of half a sleeper, kg.
     pub mass: f64,
-    /// Mass of the rail that it carries, kg.
+    /// Mass of the rail on it, kg.
     pub rail_mass: f64,
     pub pad: Option<UnderPad>,
-    /// How it turns about its axis across the track; it stays level where none is given.
+    /// Rotation about its axis across the track; `None` if it does not rotate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pitch: Option<Pitch>,
-    /// Whether it stands in the bay between the window and grains that are held at the end of a bed. They make that bay stiffer, so what is
-    /// read there is not used: its support answers and settles as its neighbours.
+    /// Whether it stands in the buffer bay between the window and the fixed grains at the end of a bed. The fixed
+    /// grains make that bay stiffer, so its results are not used: its support has the stiffness and settlement of its
+    /// neighbours.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub buffer: bool,
 }
@@ -269,19 +273,19 @@ pub struct SleeperOnGrains {
 pub struct SoilNode {
     /// From the top downwards.
     pub layers: Vec<SoilLayer>,
-    /// Parts along the track where other layers lie, from left to right.
+    /// Parts along the track with other layers, from left to right.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub blocks: Vec<SoilBlock>,
-    /// About the size of its elements, m.
+    /// Approximate size of the elements, m.
     pub element: f64,
-    /// Whether waves leave through its base, which does not move otherwise.
+    /// Whether waves leave through the base; otherwise the base does not move.
     pub quiet_base: bool,
     /// m/s^2.
     pub gravity: f64,
 }
 
-/// A part of the track with other layers of soil: a wedge, a reinforced embankment, an approach slab. It is as deep as the soil beside it.
-/// The lowest layer goes on where the layers are thinner than that.
+/// A part of the track with other layers of soil: a wedge, a reinforced embankment, an approach slab. It is as deep as
+/// the soil beside it. If its layers are thinner, the lowest layer is extended down.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SoilBlock {
     /// Chainage of its ends, m.
@@ -301,7 +305,7 @@ pub struct SoilLayer {
     pub poisson_ratio: f64,
     /// kg/m3.
     pub density: f64,
-    /// `None` does not yield.
+    /// `None` if the soil does not yield.
     pub strength: Option<Strength>,
 }
 
@@ -314,13 +318,13 @@ impl SoilNode {
 }
 
 impl BedNode {
-    /// Whether its plate is driven.
+    /// Whether its plate moves at a given velocity.
     pub fn is_driven(&self) -> bool {
         self.driven
     }
 
-    /// The rig that is this bed under actuators, its top at a level (m). Loops of force and depth, and what sensors read, are kept
-    /// of the cycles `kept`.
+    /// The test rig of this bed under actuators; `top` is the level of the top of the bed (m). Loops of force and depth
+    /// and sensor readings are kept for the cycles `kept`.
     pub fn rig(&self, actuators: &ActuatorsNode, recipe: &Recipe, top: f64, kept: &[u64]) -> Rig {
         let body = |(body, load): (&StandingBody, &Load)| Sleeper {
             place: body.place,
@@ -346,7 +350,8 @@ impl BedNode {
 }
 
 impl SensorNode {
-    /// The volume in a bed whose top is at a level (m), cut at the ends and sides of the bed; `None` where nothing is left.
+    /// The volume in a bed with its top at a level (m), cut at the ends and sides of the bed; `None` if no volume
+    /// remains.
     pub fn region(&self, top: f64) -> Option<Region> {
         let [x, y, depth] = self.place;
         let [length, width] = self.bed;
@@ -366,7 +371,7 @@ impl SensorNode {
 }
 
 impl ActuatorsNode {
-    /// Whether they give a velocity instead of a force.
+    /// Whether the actuators give a velocity instead of a force.
     pub fn drive(&self) -> bool {
         self.loads.iter().any(|load| matches!(load, Load::Strain(_)))
     }

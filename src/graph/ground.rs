@@ -1,16 +1,16 @@
-//! What carries the sleepers where no grains do: springs, and laws by which they settle.
+//! Supports of sleepers without grains: springs, and settlement laws.
 
 use crate::solvers::settlement::Law;
 use crate::solvers::track::Spring;
 use serde::{Deserialize, Serialize};
 
-/// Supports as springs that can only push. Nothing settles.
+/// Supports as springs in compression only, without settlement.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpringsNode {
     pub supports: Vec<SupportNode>,
 }
 
-/// A settlement law under each sleeper. `followers` are evaluated under the forces to which the driving law leads.
+/// A settlement law under each sleeper. `followers` are evaluated with the forces of a run with `law`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LawNode {
     pub supports: Vec<SupportNode>,
@@ -18,25 +18,26 @@ pub struct LawNode {
     pub followers: Vec<NamedLaw>,
 }
 
-/// What lies under one seat.
+/// The support under one seat.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SupportNode {
-    /// Support and under sleeper pad in series; `None` under a seat without a sleeper, and where only grains can say.
+    /// Support and under sleeper pad in series; `None` under a seat without a sleeper, and if only grains give the
+    /// stiffness.
     pub spring: Option<Spring>,
-    /// The support without the pad.
+    /// The support without the under sleeper pad.
     pub support: Option<Spring>,
     /// Settlement at the start, m.
     pub settlement: f64,
-    /// Vertical pressure on the lowest layer for each newton of contact force, 1/m^2; `None` where the layers or their moduli are not
-    /// known.
+    /// Vertical pressure on the lowest layer per newton of contact force, 1/m^2; `None` if the layers or their moduli
+    /// are not known.
     pub onto_subgrade: Option<f64>,
 }
 
-/// A settlement law under the name that the scene gives it.
+/// A settlement law with its name in the scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NamedLaw {
     pub name: String,
     pub law: Law,
-    /// Its form and parameters in words.
+    /// Form and parameters of the law as text.
     pub details: String,
 }

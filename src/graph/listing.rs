@@ -1,4 +1,4 @@
-//! The graph as a person reads it: text, JSON and DOT, generated from the ports of its nodes and from its edges.
+//! The graph for readers: text, JSON and DOT, generated from the nodes with their ports and from the edges.
 
 use super::{
     ActuatorsNode, BedNode, BedPlan, Blocks, CellsNode, Cost, Decision, Edge, GrainsNode, Graph, LawNode, Model, Node,
@@ -29,7 +29,7 @@ pub struct ListedNode {
     pub takes: Vec<Quantity>,
 }
 
-/// A quantity from node to node, as the node that gives it declares it.
+/// A quantity from node to node, as declared by the node that gives it.
 #[derive(Debug, Clone, Serialize)]
 pub struct ListedEdge {
     pub from: String,
@@ -69,10 +69,14 @@ impl Graph {
 fn listed(node: &Node) -> ListedNode {
     let ports = node.ports();
     let (model, details) = match &node.model {
-        Model::Riding(track) => {
-            ("2D finite element track with multibody vehicles, in step with the grains".into(), of_track(track))
-        }
-        Model::Track(track) => ("2D finite element track with multibody vehicles, one Newton".into(), of_track(track)),
+        Model::Riding(track) => (
+            "2D finite element track with multibody vehicles, in the same time steps as the grains".into(),
+            of_track(track),
+        ),
+        Model::Track(track) => (
+            "2D finite element track with multibody vehicles, solved together by Newton's method".into(),
+            of_track(track),
+        ),
         Model::Springs(_) => ("supports as springs, without settlement".into(), Vec::new()),
         Model::Law(law) => (format!("tier law: {} under each sleeper", law.law.name), of_law(law)),
         Model::Bed(bed) => (format!("{} on a packed bed of grains", standing(bed)), of_bed(bed)),
@@ -89,7 +93,7 @@ fn of_track(track: &TrackNode) -> Vec<String> {
     let [start, end] = track.ends();
     let beam = if track.rail.iter().any(|rail| rail.shear.is_some()) { "Timoshenko" } else { "Euler-Bernoulli" };
     let mut details = vec![
-        format!("rail: {beam}, {} elements a bay, {} m .. {} m", track.elements_per_bay, number(start), number(end)),
+        format!("rail: {beam}, {} elements per bay, {} m .. {} m", track.elements_per_bay, number(start), number(end)),
         format!("seats: {}", track.seats.len()),
     ];
     details.extend(track.sections.iter().enumerate().map(|(index, section)| {
@@ -101,7 +105,7 @@ fn of_track(track: &TrackNode) -> Vec<String> {
 }
 
 fn of_law(node: &LawNode) -> Vec<String> {
-    let beside = node.followers.iter().map(|law| format!("beside it {}, {}", law.name, law.details));
+    let beside = node.followers.iter().map(|law| format!("also evaluated: {}, {}", law.name, law.details));
     std::iter::once(node.law.details.clone()).chain(beside).collect()
 }
 
@@ -123,7 +127,7 @@ fn of_actuators(actuators: &ActuatorsNode) -> Vec<String> {
     for load in &actuators.loads {
         let line = match load {
             Load::None => "no force".to_owned(),
-            Load::Constant(force) => format!("{} kN, held", number(force / 1e3)),
+            Load::Constant(force) => format!("constant {} kN", number(force / 1e3)),
             Load::Cyclic { range: [low, high], .. } => {
                 format!("{} .. {} kN, {} Hz", number(low / 1e3), number(high / 1e3), number(1.0 / actuators.period))
             }
@@ -143,7 +147,7 @@ fn of_grains(grains: &GrainsNode) -> Vec<String> {
     let mut lines: Vec<String> = grains
         .window
         .iter()
-        .map(|[a, b]| format!("grains from {} m to {} m are asked for", number(*a), number(*b)))
+        .map(|[a, b]| format!("grains requested from {} m to {} m", number(*a), number(*b)))
         .collect();
     lines.extend(grains.beds.iter().map(|bed| format!("bed of `{}`", bed.section)));
     for stretch in &grains.stretches {
@@ -153,7 +157,7 @@ fn of_grains(grains: &GrainsNode) -> Vec<String> {
         let buffers = stretch.sleepers.iter().filter(|sleeper| sleeper.buffer).count();
         let buffers = match buffers {
             0 => String::new(),
-            count => format!(" ({count} of them over a buffer at the end, which is not read)"),
+            count => format!(" ({count} of them on a buffer at the end, whose results are not used)"),
         };
         lines.push(format!(
             "grains from {} m to {} m: {} cells of `{}` of {} m x {} m, {} sleepers{buffers}",
@@ -173,11 +177,11 @@ fn of_grains(grains: &GrainsNode) -> Vec<String> {
         StiffnessFrom::Passage => "the forces of the last passage",
     };
     lines.push(format!(
-        "stiffness of supports: by {stiffness}; sleepers beyond the grains as the nearest third of those on them"
+        "stiffness of supports: from {stiffness}; sleepers beyond the grains are like the nearest third of the sleepers on grains"
     ));
     lines.push(match grains.headway {
-        Some(headway) => format!("trains of a block follow each other every {} m", number(headway)),
-        None => "trains run one by one, and the track comes to rest between them".into(),
+        Some(headway) => format!("trains of a block follow each other at a distance of {} m", number(headway)),
+        None => "trains run one by one, and the track comes to rest between two trains".into(),
     });
     lines
 }
@@ -195,7 +199,7 @@ fn of_cells(node: &CellsNode) -> Vec<String> {
         let soil =
             cell.soil.map(|soil| format!(", on soil of {} MN/m", number((soil / 1e6).round()))).unwrap_or_default();
         lines.push(format!(
-            "cell of `{}`, {bays} of {} m x {} m, under the forces at {} m: for {sleepers}{soil}",
+            "cell of `{}`, {bays} of {} m x {} m, loaded by the forces at {} m: for {sleepers}{soil}",
             bed.section,
             number(length),
             number(width),
@@ -205,16 +209,18 @@ fn of_cells(node: &CellsNode) -> Vec<String> {
         lines.extend(cell.glued.iter().map(|glued| of_glued(glued, bed, 0.0)));
     }
     lines.push(format!(
-        "sleepers get a cell of their own where trains load them otherwise by more than {} % of the largest load",
+        "a sleeper gets its own cell if its load differs by more than {} % of the largest load",
         number((1e3 * node.tolerance).round() / 10.0)
     ));
-    lines.push("stiffness of supports: by the forces of the last passage that was computed".into());
+    lines.push("stiffness of supports: from the forces of the last computed passage".into());
     lines.push(match node.headway_time {
-        Some(time) => format!("trains of a block follow each other every {} s", number(rounded_to_mm(time))),
-        None => "trains run one by one, and the sleepers come to rest between them".into(),
+        Some(time) => {
+            format!("trains of a block follow each other at an interval of {} s", number(rounded_to_mm(time)))
+        }
+        None => "trains run one by one, and the sleepers come to rest between two trains".into(),
     });
     lines.push(format!(
-        "trains are left out where a law fitted on the way is good to {} % of the largest settlement so far, or of the compression under the train",
+        "trains are left out if a law that is fitted during the run has an error below {} % of the largest settlement so far, or of the compression under the train",
         number((1e3 * node.tolerance).round() / 10.0)
     ));
     lines
@@ -222,9 +228,12 @@ fn of_cells(node: &CellsNode) -> Vec<String> {
 
 fn of_crib(crib: Crib) -> String {
     let mm = |length: f64| number(rounded_to_mm(length) * 1e3);
-    let beyond =
-        if crib.shoulder > 0.0 { format!(", and {} mm beyond their ends", mm(crib.shoulder)) } else { String::new() };
-    format!("grains between the sleepers up to {} mm above their underside{beyond}", mm(crib.height))
+    let beyond = if crib.shoulder > 0.0 {
+        format!(", and {} mm beyond the ends of the sleepers", mm(crib.shoulder))
+    } else {
+        String::new()
+    };
+    format!("grains between the sleepers, up to {} mm above the underside of the sleepers{beyond}", mm(crib.height))
 }
 
 /// A glued layer of a bed that begins at a chainage, m.
@@ -234,7 +243,7 @@ fn of_glued(glued: &Glued, bed: &BedPlan, start: f64) -> String {
     let along = along.map(|[from, to]| format!(" from {from} m to {to} m")).unwrap_or_default();
     let Glue { tensile_strength, shear_strength, .. } = glued.glue;
     let [tensile, shear] = [tensile_strength, shear_strength].map(|strength| number(strength / 1e3));
-    format!("grains of `{layer}` are glued{along}: bonds break at {tensile} kN pulled, {shear} kN sheared")
+    format!("grains of `{layer}` are glued{along}: bonds break at {tensile} kN in tension, {shear} kN in shear")
 }
 
 fn rounded_to_mm(length: f64) -> f64 {
@@ -244,7 +253,7 @@ fn rounded_to_mm(length: f64) -> f64 {
 fn of_soil(soil: &SoilNode) -> Vec<String> {
     let line = |layer: &super::SoilLayer| {
         let (thickness, modulus) = (number(1e3 * layer.thickness), number(layer.youngs_modulus / 1e6));
-        let strength = if layer.strength.is_some() { ", yields after Mohr and Coulomb" } else { "" };
+        let strength = if layer.strength.is_some() { ", yields by Mohr-Coulomb" } else { "" };
         format!("{}: {thickness} mm, {modulus} MPa{strength}", layer.name)
     };
     let mut lines: Vec<String> = soil.layers.iter().map(line).collect();
@@ -254,7 +263,7 @@ fn of_soil(soil: &SoilNode) -> Vec<String> {
         names.sort_unstable();
         names.dedup();
         lines.push(format!(
-            "other layers between {start} and {end} m, in {} blocks: {}",
+            "different layers between {start} and {end} m, in {} blocks: {}",
             soil.blocks.len(),
             names.join(", ")
         ));
@@ -295,7 +304,7 @@ fn block_lines(blocks: &Blocks, cost: &Cost) -> Vec<String> {
     lines.push(block_line(blocks, cost));
     let each = match blocks.adaptive() {
         Some(_) => {
-            "each block: static state -> passage -> settlement of half of it -> passage -> settlement of the block"
+            "each block: static state -> passage -> settlement of half of the block -> passage -> settlement of the block"
         }
         None => "each block: static state -> passage -> settlement of the block",
     };
@@ -311,8 +320,8 @@ fn block_line(blocks: &Blocks, cost: &Cost) -> String {
     match blocks.update {
         _ if !blocks.share => format!("{total} axles, every train a block"),
         Update::Adaptive { tolerance, cap } => {
-            let cap = cap.map_or(String::new(), |cap| format!(" and {} mm of settlement", number(cap * 1e3)));
-            format!("{total} axles in blocks that err by at most {} mm{cap}", number(tolerance * 1e3))
+            let cap = cap.map_or(String::new(), |cap| format!(" and a settlement of at most {} mm", number(cap * 1e3)));
+            format!("{total} axles in blocks with an error of at most {} mm{cap}", number(tolerance * 1e3))
         }
         Update::Fixed { axles } if matches!(cost.work, Work::Tests(_)) => {
             format!("{total} axles in blocks of {} at most", axles.min(total))
@@ -339,12 +348,15 @@ fn test_lines(tests: &Tests, actuators: &ActuatorsNode) -> Vec<String> {
     };
     let kept: Vec<String> = tests.kept.iter().map(u64::to_string).collect();
     vec![
-        format!("{packings}: pack the bed, set down what stands on it, {cycles} of {} s", number(actuators.period)),
-        format!("loops and sensors are kept of cycle {}", kept.join(", ")),
+        format!(
+            "{packings}: pack the bed, set down the sleepers or the plate, {cycles} of {} s",
+            number(actuators.period)
+        ),
+        format!("loops and sensor readings are kept for cycle {}", kept.join(", ")),
     ]
 }
 
-/// A few digits of a rough number.
+/// Rounds an estimate to three digits.
 fn rounded(value: f64) -> String {
     number(format!("{value:.2e}").parse().unwrap_or(value))
 }
@@ -386,7 +398,7 @@ fn cost_lines(cost: &Cost) -> String {
 }
 
 impl Listing {
-    /// The plan for people.
+    /// The plan as text.
     pub fn text(&self) -> String {
         let mut out = String::new();
         for node in &self.nodes {

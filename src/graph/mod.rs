@@ -1,8 +1,8 @@
-//! The solver graph as data: nodes that own state, the ports through which quantities pass, the edges between them, and the
-//! schedule that advances them (Fig. 3 of the paper).
+//! The solver graph as data: nodes that own state, the ports through which they exchange quantities, the edges between
+//! them, and the schedule that advances them (Fig. 3 of the paper).
 //!
-//! A graph is what `lower` makes of a scene, what `trackbed plan` prints and what `execute` runs. It knows SI numbers of
-//! one rail and no word of the language; where the scene says a number is told by `lower`.
+//! `lower` makes the graph of a scene, `trackbed plan` prints it, and `execute` runs it. A graph has SI numbers for one
+//! rail and does not depend on the language; `lower` has the places of its numbers in the scene.
 
 mod blocks;
 mod cells;
@@ -50,17 +50,18 @@ pub struct Graph {
     pub edges: Vec<Edge>,
     pub schedule: Schedule,
     pub records: Vec<Record>,
-    /// What the scene and its layers say of the support under each seat of a track, whatever node carries it; none in a rig.
+    /// The support under each seat of a track from the scene and its layers, independent of the node that carries it;
+    /// empty in a rig.
     pub supports: Vec<SupportNode>,
-    /// What each pass decided, and why.
+    /// Decisions of the passes, with their reasons.
     pub decisions: Vec<Decision>,
     pub cost: Cost,
-    /// Whether this version has every node that it takes; one that does not is looked at and not run.
+    /// Whether this version has every node of the graph; otherwise the graph is shown but not run.
     pub runs: bool,
 }
 
 impl Graph {
-    /// The node of a name.
+    /// The node with a name.
     pub fn node(&self, name: &str) -> Option<&Node> {
         self.nodes.iter().find(|node| node.name == name)
     }
@@ -73,25 +74,25 @@ impl Graph {
         })
     }
 
-    /// How trains pass the grains under a track, where it has some.
+    /// The passing of trains over the grains under a track; `None` if there are no grains.
     pub fn passing(&self) -> Option<Passing> {
         self.nodes
             .iter()
             .find_map(|node| if let Model::Grains(grains) = &node.model { Passing::over(grains) } else { None })
     }
 
-    /// What blocks weigh in the progress of a run over grains; `None` where no grains lie under a track.
+    /// Weight of a block in the progress of a run over grains; `None` if no grains lie under a track.
     pub fn block_weight(&self) -> Option<BlockWeight> {
         let cells = || self.nodes.iter().any(|node| matches!(node.model, Model::Cells(_)));
         self.passing().map(BlockWeight::Time).or_else(|| cells().then_some(BlockWeight::Equal))
     }
 
-    /// Whether grains lie under its track: all along, in part or in cells.
+    /// Whether grains lie under the track: over its whole length, in part or in cells.
     pub fn has_grains_under_track(&self) -> bool {
         self.nodes.iter().any(|node| matches!(node.model, Model::Grains(_) | Model::Cells(_)))
     }
 
-    /// Whether grains of it are glued.
+    /// Whether any grains are glued.
     pub fn has_bonds(&self) -> bool {
         self.nodes.iter().any(|node| match &node.model {
             Model::Bed(bed) => !bed.glued.is_empty(),
@@ -101,7 +102,7 @@ impl Graph {
         })
     }
 
-    /// Volumes of grains under the track in which passages are recorded; none without grains.
+    /// Volumes of grains under the track in which passages are recorded; empty without grains.
     pub fn volumes(&self) -> &[VolumeUnderTrack] {
         let grains = |node: &Node| matches!(node.model, Model::Grains(_));
         match self.nodes.iter().find(|node| grains(node)).map(|node| &node.model) {
@@ -110,12 +111,12 @@ impl Graph {
         }
     }
 
-    /// Whether vehicles ride on a rail that is advanced step by step with what carries it, so that blocks exchange nothing.
+    /// Whether vehicles, rail and grains are computed together, without an exchange between blocks.
     pub fn is_ridden(&self) -> bool {
         self.nodes.iter().any(|node| matches!(node.model, Model::Riding(_)))
     }
 
-    /// The laws by which supports settle, the driving one first.
+    /// The settlement laws of the supports, the driving law first.
     pub fn laws(&self) -> impl Iterator<Item = &NamedLaw> {
         let law = self.nodes.iter().find_map(|node| if let Model::Law(law) = &node.model { Some(law) } else { None });
         law.into_iter().flat_map(|node| std::iter::once(&node.law).chain(&node.followers))
@@ -131,7 +132,7 @@ impl Graph {
         })
     }
 
-    /// A bed under actuators, with them.
+    /// A bed under actuators, with the actuators.
     pub fn bed_under_actuators(&self) -> Option<(&BedNode, &ActuatorsNode)> {
         let bed =
             self.nodes.iter().find_map(|node| if let Model::Bed(bed) = &node.model { Some(&**bed) } else { None });
@@ -142,7 +143,7 @@ impl Graph {
         bed.zip(loads)
     }
 
-    /// The loop over axles; `None` where no train runs.
+    /// The loop over axles; `None` if no train runs.
     pub fn blocks(&self) -> Option<&Blocks> {
         if let Schedule::Blocks(blocks) = &self.schedule { Some(blocks) } else { None }
     }

@@ -1,60 +1,60 @@
-//! A node as data: its name, the plain parameters of its solver, and its ports, which follow from them.
+//! A node as data: its name, the parameters of its solver, and its ports, which follow from the parameters.
 
 use super::quantity::*;
 use super::{ActuatorsNode, BedNode, CellsNode, GrainsNode, LawNode, Ports, SoilNode, SpringsNode, TrackNode};
 use serde::{Deserialize, Serialize};
 
-/// A part of the machine that owns a state and advances it.
+/// A part of the simulation that owns a state and advances it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Node {
     pub name: String,
     pub model: Model,
 }
 
-/// What a node is.
+/// The model of a node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Model {
     /// Rail, pads, sleepers and slab with the vehicles on them.
     Track(Box<TrackNode>),
-    /// The same, step by step with the grains under it.
+    /// The same track, computed step by step together with the grains under it.
     Riding(Box<TrackNode>),
     /// Supports that do not settle.
     Springs(SpringsNode),
     /// Supports that settle by a law.
     Law(LawNode),
-    /// A bed of grains with what stands on it, under actuators.
+    /// A bed of grains with sleepers or a plate on it, under actuators.
     Bed(Box<BedNode>),
     /// The loads of a rig.
     Actuators(ActuatorsNode),
     /// The grains under a track.
     Grains(GrainsNode),
-    /// A cell of grains for each sleeper that is loaded otherwise than the others.
+    /// A cell of grains for each distinct sleeper.
     Cells(CellsNode),
     /// The ground below the grains.
     Soil(SoilNode),
-    /// A node of another program: whoever runs the graph says how it is built.
+    /// A node of another program, which also builds it.
     Custom(CustomNode),
 }
 
 /// A node that this crate does not know, as data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CustomNode {
-    /// By which its builder is found.
+    /// The name by which its builder is found.
     pub kind: String,
     pub ports: Ports,
-    /// For people, a line each.
+    /// Description for readers, one line for each item.
     pub details: Vec<String>,
     pub parameters: serde_json::Value,
 }
 
 impl Node {
-    /// A node by its name.
+    /// A node with a name.
     pub fn new(name: impl Into<String>, model: Model) -> Node {
         Node { name: name.into(), model }
     }
 
-    /// The quantities that it gives and takes.
+    /// The quantities that the node gives and takes.
     pub fn ports(&self) -> Ports {
         let (gives, takes) = match &self.model {
             Model::Track(_) => {

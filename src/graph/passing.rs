@@ -1,28 +1,28 @@
-//! How long trains take to pass grains, in the time of the scene: what a run on grains costs, and how far it is.
+//! Simulated time in which trains pass grains, for the cost and the progress of a run on grains.
 
 use super::{Block, Blocks, GrainsNode, Runner};
 
-/// Way that wheels run beside the grains while they act on them, m, and time of a rest after a passage, s.
+/// Distance that wheels run beside the grains while they act on the grains, m; time of rest after a passage, s.
 const BESIDE: f64 = 12.0;
 const REST: f64 = 0.25;
-/// Blocks that are looked at one by one; those behind count as the last of them.
+/// Number of blocks that are counted one by one; later blocks count like the last of these.
 const FOLLOWED: usize = 10_000;
 
-/// Trains on their way over grains.
+/// Trains that pass over grains.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Passing {
-    /// From the first grain to the last, m.
+    /// Distance from the first to the last grain, m.
     pub length: f64,
-    /// Distance from the front of a train to that of the next one, m; `None` where the track comes to rest between them.
+    /// Distance between the fronts of two trains, m; `None` if the track comes to rest between two trains.
     pub headway: Option<f64>,
 }
 
-/// What a block of trains over grains weighs in the progress of a run.
+/// Weight of a block of trains over grains in the progress of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BlockWeight {
-    /// The time in which its trains pass, for all of them are computed.
+    /// The time in which the trains pass; all trains are computed.
     Time(Passing),
-    /// All blocks weigh the same: cells compute as many trains as they need, and nobody knows before how many.
+    /// All blocks have the same weight: the number of trains that cells compute is not known in advance.
     Equal,
 }
 
@@ -42,7 +42,7 @@ impl BlockWeight {
 }
 
 impl Passing {
-    /// Trains over the grains of a node; `None` where it has none yet.
+    /// Trains over the grains of a node; `None` if it has no grains yet.
     pub fn over(grains: &GrainsNode) -> Option<Passing> {
         let ends = grains.stretches.iter().map(|stretch| {
             let [cell, _] = grains.beds[stretch.bed].numbers().plan;
@@ -71,7 +71,7 @@ impl Passing {
     }
 }
 
-/// Sum over the blocks between two counts of axles. Blocks that nobody knows before their forces count as a train each.
+/// Sum over the blocks between two counts of axles. A block whose length depends on forces counts as one train.
 fn between(blocks: &Blocks, [from, to]: [u64; 2], of_block: impl Fn(&Block) -> f64) -> f64 {
     let (mut sum, mut before) = (0.0, from);
     for followed in 0.. {

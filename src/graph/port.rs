@@ -1,22 +1,22 @@
-//! Ports of nodes, the edges between them, and the check that they fit: the types of the plan.
+//! Ports of nodes, the edges between them, and the check that they fit together.
 
 use super::{Graph, Quantity};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// The quantities that a node gives to others and those that it cannot run without.
+/// The quantities that a node gives to other nodes, and the quantities that it needs.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Ports {
     pub gives: Vec<Quantity>,
     pub takes: Vec<Quantity>,
 }
 
-/// A quantity on its way from the node that gives it to one that takes it, both by name.
+/// The connection of a quantity from the node that gives it to a node that takes it, both by name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Edge {
     pub from: String,
     pub to: String,
-    /// Its name.
+    /// Name of the quantity.
     pub quantity: String,
 }
 
@@ -27,22 +27,22 @@ impl Edge {
     }
 }
 
-/// Why nodes and edges of a plan do not make a machine.
+/// A reason why the nodes and edges of a plan do not fit together.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fault {
-    /// Two nodes have one name.
+    /// Two nodes have the same name.
     TwoNodes { name: String },
-    /// An edge begins or ends at a node that is not there.
+    /// An edge begins or ends at a node that does not exist.
     NoNode { edge: Edge, name: String },
-    /// An edge brings what the node at its start does not give.
+    /// The node at the start of an edge does not give the quantity.
     NotGiven { edge: Edge },
-    /// An edge brings what the node at its end does not take.
+    /// The node at the end of an edge does not take the quantity.
     NotTaken { edge: Edge },
-    /// Nothing brings what a node takes.
+    /// No edge brings a quantity that a node takes.
     Missing { node: String, quantity: Quantity },
-    /// Several edges bring what a node takes once.
+    /// Several edges bring the same quantity to a node.
     Doubled { node: String, quantity: Quantity, from: Vec<String> },
-    /// Both ends of an edge mean something else by one name.
+    /// Both ends of an edge use one name for different quantities.
     Contradictory { edge: Edge, given: Quantity, taken: Quantity },
 }
 
@@ -51,13 +51,13 @@ impl fmt::Display for Fault {
         match self {
             Fault::TwoNodes { name } => write!(f, "two nodes are called `{name}`"),
             Fault::NoNode { edge, name } => {
-                write!(f, "the edge of `{}` names a node `{name}`, which is not there", edge.quantity)
+                write!(f, "the edge of `{}` names a node `{name}`, which does not exist", edge.quantity)
             }
             Fault::NotGiven { edge } => write!(f, "node `{}` gives no `{}`", edge.from, edge.quantity),
             Fault::NotTaken { edge } => write!(f, "node `{}` takes no `{}`", edge.to, edge.quantity),
             Fault::Missing { node, quantity } => write!(f, "node `{node}` takes {quantity}, and no edge brings it"),
             Fault::Doubled { node, quantity, from } => {
-                write!(f, "node `{node}` takes `{}` once, and {} bring it", quantity.name, from.join(" and "))
+                write!(f, "node `{node}` takes `{}` from one node, but {} give it", quantity.name, from.join(" and "))
             }
             Fault::Contradictory { edge, given, taken } => {
                 write!(f, "node `{}` gives {given}, node `{}` takes {taken}", edge.from, edge.to)
@@ -66,7 +66,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Every fault of a graph, in the order of its nodes and edges; none where it may run.
+/// All faults of a graph, in the order of its nodes and edges; empty if the graph may run.
 pub fn faults(graph: &Graph) -> Vec<Fault> {
     let mut found = Vec::new();
     for (index, node) in graph.nodes.iter().enumerate() {

@@ -1,12 +1,13 @@
-//! What passes from node to node: a quantity with its unit, of what it is, and how often it passes.
+//! Quantities that nodes exchange: each with its unit, its basis and its rate.
 //!
-//! The quantities of this version stand below; a node of another program may have its own, which are checked alike.
+//! The quantities of this version stand below; a node of another program may have its own, which are checked in the
+//! same way.
 
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::fmt;
 
-/// A quantity that one node gives and another takes. Two ports fit where name, unit, basis and rate are equal.
+/// A quantity that one node gives and another takes. Two ports fit if name, unit, basis and rate are equal.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Quantity {
     pub name: Cow<'static, str>,
@@ -18,19 +19,19 @@ pub struct Quantity {
     pub rate: Rate,
 }
 
-/// To what one value of a quantity belongs. All are of one rail.
+/// The basis of one value of a quantity. All values are for one rail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Basis {
     Seat,
     Wheel,
-    /// Half a sleeper or a whole one, as the bed models one rail or both.
+    /// Half a sleeper, or a whole sleeper if the bed models both rails.
     Sleeper,
     /// A facet of the surface of the soil.
     Facet,
 }
 
-/// How often a quantity passes.
+/// How often a quantity is exchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rate {
@@ -53,14 +54,14 @@ impl Quantity {
     }
 }
 
-/// Static stiffness of the support of each sleeper, with that of its first compression where it seats itself.
+/// Static stiffness of the support of each sleeper, with the stiffness of the first compression if it has a seating.
 pub const SUPPORT_STIFFNESS: Quantity =
     Quantity::new("support stiffness and seating", "k", "N/m", Basis::Seat, Rate::Block);
 /// Damping of the support of each sleeper.
 pub const SUPPORT_DAMPING: Quantity = Quantity::new("support damping", "c", "N s/m", Basis::Seat, Rate::Block);
-/// Permanent downward move of the support of each sleeper.
+/// Permanent downward displacement of the support of each sleeper.
 pub const SETTLEMENT: Quantity = Quantity::new("settlement", "s", "m", Basis::Seat, Rate::Block);
-/// The largest force of each sleeper on its support under each wheel, with the deflection of the support there.
+/// The largest force of each sleeper on its support under each wheel, with the deflection of the support at this force.
 pub const SLEEPER_FORCE_PEAKS: Quantity =
     Quantity::new("peaks of sleeper forces", "max R", "N", Basis::Seat, Rate::Block);
 /// The force of each sleeper on its support over a passage.
@@ -69,9 +70,9 @@ pub const SLEEPER_FORCES: Quantity = Quantity::new("sleeper forces", "R(t)", "N"
 pub const WHEEL_FORCES: Quantity = Quantity::new("wheel forces", "F(t)", "N", Basis::Wheel, Rate::Block);
 /// The force of an actuator on its sleeper or plate.
 pub const ACTUATOR_FORCE: Quantity = Quantity::new("actuator force", "F", "N", Basis::Sleeper, Rate::Step);
-/// The speed with which an actuator drives a plate down.
+/// The downward speed of a plate under an actuator.
 pub const ACTUATOR_VELOCITY: Quantity = Quantity::new("actuator velocity", "v", "m/s", Basis::Sleeper, Rate::Step);
-/// The downward move of a sleeper on grains.
+/// The downward displacement of a sleeper on grains.
 pub const SLEEPER_DISPLACEMENT: Quantity = Quantity::new("sleeper displacement", "u", "m", Basis::Sleeper, Rate::Step);
 /// The force of grains on a sleeper, upwards.
 pub const GRAIN_PUSH: Quantity = Quantity::new("push of the grains", "R", "N", Basis::Sleeper, Rate::Step);

@@ -8,17 +8,17 @@ pub struct Record {
     pub quantities: Vec<History>,
     /// Indices of seats.
     pub seats: Vec<usize>,
-    /// Axle counts at which a passage is recorded; of a rig cycles.
+    /// Axle counts at which a passage is recorded; cycles for a rig.
     pub after: Vec<u64>,
     /// Kept only while a wheel is nearer to the seat than this, m; `None` keeps the whole passage.
     pub near: Option<f64>,
 }
 
-/// A quantity that varies during a passage. Signs are those of the track solver.
+/// A quantity that varies during a passage. The signs are as in the track solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum History {
-    /// Force of a wheel on the rail, N; kept of every wheel of a recorded passage.
+    /// Force of a wheel on the rail, N; kept for every wheel of a recorded passage.
     WheelForce,
     /// Force of the rail on a pad, N.
     RailSeatLoad,
@@ -46,7 +46,7 @@ impl History {
         History::SleeperAcceleration,
     ];
 
-    /// Its name in files.
+    /// The name in files.
     pub fn name(self) -> &'static str {
         match self {
             History::WheelForce => "wheel_force",
@@ -60,13 +60,13 @@ impl History {
         }
     }
 
-    /// The quantity of a name; `None` of one that no passage keeps.
+    /// The quantity with a name; `None` if no passage keeps it.
     pub fn named(name: &str) -> Option<History> {
         History::ALL.into_iter().find(|history| history.name() == name)
     }
 }
 
-/// A quantity of a volume of grains in a passage, or of the sleeper over it.
+/// A quantity of a volume of grains in a passage, or of the sleeper over the volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum InVolume {
@@ -76,9 +76,10 @@ pub enum InVolume {
     BallastAcceleration,
     /// Vertical stress, Pa, positive in compression.
     BallastStress,
-    /// Mean number of neighbours that a grain touches.
+    /// Mean number of contacts with neighbours per grain.
     CoordinationNumber,
-    /// Velocity and acceleration of the sleeper over the volume, m/s and m/s^2, downward, and its force on the grains, N.
+    /// Velocity and acceleration of the sleeper over the volume, m/s and m/s^2, downward, and its force on the grains,
+    /// N.
     SleeperVelocity,
     SleeperAcceleration,
     SleeperForce,
@@ -92,7 +93,7 @@ impl InVolume {
         InVolume::CoordinationNumber,
     ];
 
-    /// Its name in files. Quantities of the sleeper are named apart from those of the plane track.
+    /// The name in files. Quantities of the sleeper have other names than the quantities of the plane track.
     pub fn name(self) -> &'static str {
         match self {
             InVolume::BallastVelocity => "ballast_velocity",
@@ -105,7 +106,7 @@ impl InVolume {
         }
     }
 
-    /// The quantity of the grains of a name; `None` of one that no passage keeps.
+    /// The quantity of the grains with a name; `None` if no passage keeps it.
     pub fn named(name: &str) -> Option<InVolume> {
         InVolume::OF_GRAINS.into_iter().find(|quantity| quantity.name() == name)
     }

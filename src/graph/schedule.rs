@@ -1,4 +1,4 @@
-//! When nodes run: one state of rest, blocks of axles, or the cycles of actuators.
+//! Schedules: one state of rest, blocks of axles, or the cycles of actuators.
 
 use super::Train;
 use crate::solvers::track::{Direction, Integrator, Sequence};
@@ -15,12 +15,12 @@ pub enum Schedule {
     Blocks(Box<Blocks>),
     /// Packings that are tested one after the other.
     Actuators(Tests),
-    /// A schedule of another program: whoever runs the graph says how.
+    /// A schedule of another program, which also runs it.
     Custom { kind: String, parameters: serde_json::Value },
 }
 
 impl Schedule {
-    /// What a count of it is of.
+    /// The unit of the counts of the schedule.
     pub fn clock(&self) -> fn(u64) -> Clock {
         match self {
             Schedule::Actuators(_) => Clock::Cycles,
@@ -29,7 +29,7 @@ impl Schedule {
     }
 }
 
-/// A constant force, N, positive down.
+/// A constant force, N, positive downwards.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PointLoad {
     pub on: LoadedPart,
@@ -48,9 +48,9 @@ pub enum LoadedPart {
 /// Tests under actuators.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Tests {
-    /// Packings, each with the seed after that of the one before.
+    /// Number of packings; their seeds are consecutive.
     pub packings: u32,
-    /// Cycles of which loops of force and depth and readings of sensors are kept, the first is 1.
+    /// Cycles whose loops of force and depth and sensor readings are kept; the first cycle is 1.
     pub kept: Vec<u64>,
 }
 
@@ -62,25 +62,25 @@ pub struct Blocks {
     pub passage: PassagePlan,
     /// Trains of other kinds.
     pub others: Vec<(Train, PassagePlan)>,
-    /// Which train runs when.
+    /// The order of the trains.
     pub sequence: Sequence,
-    /// How long the blocks are.
+    /// The policy for the length of the blocks.
     pub update: Update,
-    /// Whether a fixed or geometric block that overshoots is done again in halves. Off, the oscillation shows.
+    /// Whether a fixed or geometric block that overshoots is repeated in halves. If not, the settlement can oscillate.
     pub cure: bool,
-    /// Whether one passage stands for all equal trains of a block. Off, each train of a block is a block.
+    /// Whether one passage is used for all equal trains of a block. If not, each train is a block.
     pub share: bool,
     /// Axle counts at which the state of the track is recorded, ascending.
     pub recorded: Vec<u64>,
     pub tampings: Vec<Tamping>,
-    /// Axle counts at which a block ends, ascending: those, the counts of tampings and those at which another kind of train
-    /// begins.
+    /// Axle counts at which a block ends, ascending: the recorded counts, the counts of tampings, and the counts at
+    /// which another kind of train begins.
     pub stops: Vec<u64>,
     /// Axles of the whole run.
     pub total: u64,
 }
 
-/// After how many axles forces and settlement are exchanged.
+/// Number of axles between two exchanges of forces and settlement.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Update {
@@ -88,13 +88,13 @@ pub enum Update {
     Fixed { axles: u64 },
     /// `first` axles, then blocks of `ratio` times the axles so far, never smaller than `first`.
     Geometric { first: u64, ratio: f64 },
-    /// Blocks as long as their estimated error of settlement allows: at most `tolerance` at any seat, m. `cap` bounds the
-    /// settlement of a block as well, m.
+    /// Blocks as long as the estimated error of settlement allows: at most `tolerance` at any seat, m. `cap` also
+    /// limits the settlement of a block, m.
     Adaptive { tolerance: f64, cap: Option<f64> },
 }
 
 impl Update {
-    /// Axles of the block that begins after so many, where the policy knows without a look at forces.
+    /// Axles of the block that begins after `before` axles, if the policy does not depend on forces.
     pub fn axles_after(&self, before: u64) -> Option<u64> {
         match *self {
             Update::Fixed { axles } => Some(axles),
@@ -104,47 +104,48 @@ impl Update {
     }
 }
 
-/// Sleepers that are lifted and packed anew at some counts.
+/// Sleepers that are lifted and packed again at some counts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Tamping {
     pub name: String,
-    /// Axles that have passed before it, each once.
+    /// Axle counts after which the sleepers are tamped, each once.
     pub after: Vec<u64>,
     /// Indices of seats, ascending, all of them on ballast.
     pub seats: Vec<usize>,
-    /// Share of the settlement that stays, 0 .. 1.
+    /// Share of the settlement that remains, 0 .. 1.
     pub left: f64,
 }
 
-/// How one passage is integrated.
+/// Parameters of the time integration of a passage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PassagePlan {
-    /// Chainage of the wheel nearest to the left end while the train stands at the left, m, and of the wheel nearest
-    /// to the right end while it stands at the right.
+    /// Chainage of the leftmost wheel while the train stands at the left, m, and of the rightmost wheel while the train
+    /// stands at the right.
     pub left: f64,
     pub right: f64,
-    /// s; the longest one where steps vary.
+    /// Time step, s; the longest step if steps are adaptive.
     pub time_step: f64,
-    /// Steps are halved down to `time_step / 2^halvings` where their error asks for it.
+    /// Adaptive steps: halved down to `time_step / 2^halvings` if their error is too large.
     pub adaptive: Option<AdaptiveSteps>,
     pub integrator: Integrator,
-    /// Interval of histories, in time steps, the longest ones where they vary.
+    /// Interval of histories in time steps; in longest steps if steps are adaptive.
     pub sample_every: u64,
 }
 
-/// How the length of a time step is chosen.
+/// Parameters of adaptive time steps.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AdaptiveSteps {
-    /// Error that a step may make, as part of the largest deflection of the rail under the standing train.
+    /// Largest error of a step / largest deflection of the rail under the standing train.
     pub tolerance: f64,
     pub halvings: u32,
 }
 
-/// Distance that a wheel runs before it counts as passing a seat, m: about the half-width of a deflection bowl.
+/// Distance that a wheel must run before and behind a seat to count as passing it, m: about half the width of a
+/// deflection bowl.
 const APPROACH: f64 = 1.0;
 
 impl PassagePlan {
-    /// Chainages between which every wheel of a train comes and goes, m.
+    /// Chainages between which every wheel of a train passes every seat, m.
     pub fn passed(&self, train: &Train) -> std::ops::Range<f64> {
         let base = train.wheel_base();
         self.left + base + APPROACH..self.right - base - APPROACH
@@ -164,7 +165,7 @@ impl PassagePlan {
         self.time_step * self.adaptive.map_or(1.0, |steps| 0.5f64.powi(steps.halvings as i32))
     }
 
-    /// A step as it is on average, for estimates, s: where steps vary, a quarter of the longest.
+    /// Average step for estimates, s; a quarter of the longest step if steps are adaptive.
     pub fn usual_step(&self) -> f64 {
         if self.adaptive.is_some() { self.time_step / 4.0 } else { self.time_step }
     }
@@ -176,37 +177,37 @@ pub struct Block {
     /// Axles that have passed before.
     pub before: u64,
     pub axles: u64,
-    /// How many trains of each kind run in each direction.
+    /// Number of trains of each kind in each direction.
     pub runs: Vec<(Runner, u64)>,
 }
 
-/// Trains that do the same to the track as it lies: one passage stands for all of them.
+/// Trains with the same effect on the track at a given state: one passage is used for all of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Runner {
-    /// Index of the kind of train in the traffic, 0 leads it.
+    /// Index of the kind of train in the traffic; 0 is the leading kind.
     pub kind: usize,
     pub direction: Direction,
 }
 
 impl Blocks {
-    /// Chainages between which every wheel of the leading train comes and goes: seats there see the whole train.
+    /// Chainages between which every wheel of the leading train passes every seat.
     pub fn passed(&self) -> std::ops::Range<f64> {
         self.passage.passed(&self.train)
     }
 
-    /// Chainages between which every wheel of a train comes and goes, for each kind of train.
+    /// Chainages between which every wheel of a train passes every seat, for each kind of train.
     pub fn passed_by_kind(&self) -> Vec<std::ops::Range<f64>> {
         let kinds = (0..=self.others.len()).map(|kind| self.kind(kind));
         kinds.map(|(train, plan)| plan.passed(train)).collect()
     }
 
-    /// The direction of the passage of the leading train that shows a state of the track.
+    /// The direction of the passage of the leading train that is recorded for a state of the track.
     pub fn leading_direction(&self) -> Direction {
         self.train.leading_direction()
     }
 }
 
-/// How far a schedule is, in what it counts.
+/// Progress of a schedule, in its own unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Clock {

@@ -1,14 +1,15 @@
-//! The track node as data: rail, pads, sleepers, slabs of one rail. The supports of its sleepers come from another node.
+//! The track node as data: rail, pads, sleepers and slabs for one rail. The supports of the sleepers come from another
+//! node.
 
 use crate::solvers::track::{
     AuxiliaryRail, Foot, Irregularity, RailEnds, RailSection, Seat, Seating, Slab, Spring, TrackLevel, TrackModel,
 };
 use serde::{Deserialize, Serialize};
 
-/// The 2D track of one rail; with the vehicles of its schedule it is one coupled system.
+/// The 2D track of one rail. Track and vehicles of the schedule are one coupled system.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrackNode {
-    /// Left to right, without gaps, one a section.
+    /// From left to right, without gaps, one for each section.
     pub rail: Vec<RailSection>,
     pub sections: Vec<TrackSection>,
     pub seats: Vec<TrackSeat>,
@@ -23,22 +24,22 @@ pub struct TrackNode {
     pub shortest_bay: f64,
 }
 
-/// A part of the track of one trackform.
+/// A part of the track with one trackform.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrackSection {
-    /// The name of its trackform.
+    /// Name of the trackform.
     pub name: String,
     /// Chainage of its ends, m.
     pub start: f64,
     pub end: f64,
-    /// Stiffness of the foundation of its slab, N/m per metre; `None` without one.
+    /// Stiffness of the foundation of its slab, N/m per metre; `None` without a slab.
     pub slab_foundation: Option<f64>,
 }
 
 /// A rail seat.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrackSeat {
-    /// Its number, led by the name of its transition where there are several.
+    /// Number of the seat, after the name of its transition if there are several transitions.
     pub name: String,
     /// Chainage, m.
     pub x: f64,
@@ -46,7 +47,7 @@ pub struct TrackSeat {
     pub section: usize,
     /// Length of track that it carries, m.
     pub bay: f64,
-    /// N/m and N s/m.
+    /// Stiffness (N/m) and damping (N s/m) of the pad.
     pub pad_stiffness: f64,
     pub pad_damping: f64,
     pub foot: TrackFoot,
@@ -55,7 +56,7 @@ pub struct TrackSeat {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TrackFoot {
-    /// Half a sleeper, its mass in kg, on a support that can only push.
+    /// Half a sleeper, with its mass in kg, on a support in compression only.
     Sleeper { mass: f64 },
     /// A seat that does not move.
     Rigid,
@@ -63,24 +64,24 @@ pub enum TrackFoot {
     Slab,
 }
 
-/// What the ground answers at every seat.
+/// The springs of the ground at every seat.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Responses {
-    /// Grows whenever a response changes: the track is factored anew only then.
+    /// Increases with every change of a spring; the track is factored again only then.
     pub revision: u64,
-    /// The spring under each seat; `None` where no sleeper lies.
+    /// The spring under each seat; `None` without a sleeper.
     pub seats: Vec<Option<Spring>>,
 }
 
 impl TrackFoot {
-    /// Mass of half the sleeper, kg; 0 where there is none.
+    /// Mass of half the sleeper, kg; 0 without a sleeper.
     pub fn mass(&self) -> f64 {
         if let TrackFoot::Sleeper { mass } = self { *mass } else { 0.0 }
     }
 }
 
 impl TrackSeat {
-    /// Whether a support that can settle carries it.
+    /// Whether a support that can settle carries the seat.
     pub fn is_ballasted(&self) -> bool {
         matches!(self.foot, TrackFoot::Sleeper { .. })
     }
@@ -92,8 +93,8 @@ impl TrackNode {
         [self.sections.first().map_or(0.0, |s| s.start), self.sections.last().map_or(0.0, |s| s.end)]
     }
 
-    /// The model of the solver on supports that answer so. A sleeper without a response has a support without stiffness, which
-    /// the solver refuses.
+    /// The model of the solver on the supports `responses`. A sleeper without a spring has a support of stiffness 0,
+    /// which the solver refuses.
     pub fn model(&self, responses: &Responses) -> TrackModel {
         let seats = self.seats.iter().enumerate();
         TrackModel {
@@ -110,8 +111,8 @@ impl TrackNode {
         }
     }
 
-    /// A track of so many seats that is everywhere as at one seat: its rail, pad, foot and slab, with a clamp at both ends. `None`
-    /// where there is no such seat, or no rail over it.
+    /// A uniform track of `seats` seats with the rail, pad, foot and slab of one seat, clamped at both ends. `None` if
+    /// there is no such seat or no rail over it.
     pub fn everywhere_as_at(&self, index: usize, seats: usize) -> Option<TrackNode> {
         let seat = self.seats.get(index)?;
         let over = |start: f64, end: f64| start - 1e-6 <= seat.x && seat.x <= end + 1e-6;
@@ -132,8 +133,8 @@ impl TrackNode {
         })
     }
 
-    /// The part of the track from one of its seats to another, clamped at both ends; statics are those of the whole a few decay
-    /// lengths inside of it. `None` where it has no rail.
+    /// The part of the track from one seat to another, clamped at both ends. A few decay lengths away from its ends the
+    /// statics are equal to the statics of the whole track. `None` if it has no rail.
     pub fn part(&self, first: usize, last: usize) -> Option<TrackNode> {
         let (left, right) = (self.seats.get(first)?, self.seats.get(last)?);
         let [start, end] = [left.x - left.bay / 2.0, right.x + right.bay / 2.0];
@@ -171,15 +172,15 @@ impl TrackNode {
         })
     }
 
-    /// The settled track: supports where they lie, and the rail ends held at the level of the track there. A clamp that
-    /// stayed at the level as built would grow a second transition at the end of the model.
+    /// The settled track: the settlements of the supports, and the rail ends held at the level of the settled track. A
+    /// clamp at the level as built would become a second transition at the end of the model.
     pub fn level(&self, settlement: &[f64], responses: &Responses) -> TrackLevel {
         let end = |seat: usize| settlement.get(seat).map_or(0.0, |settled| settled + self.sag(seat, responses));
         let last = self.seats.len().saturating_sub(1);
         TrackLevel { settlements: settlement.to_vec(), ends: [end(0), end(last)] }
     }
 
-    /// Deflection of the rail under gravity, m, of a long track that is everywhere as at one seat.
+    /// Deflection of the rail under gravity, m, of a long uniform track with the properties of one seat.
     fn sag(&self, index: usize, responses: &Responses) -> f64 {
         let Some(seat) = self.seats.get(index) else { return 0.0 };
         let Some(rail) = self.rail.get(seat.section) else { return 0.0 };

@@ -1,13 +1,14 @@
-//! Trains as data: vehicles in their order, how fast they run and which way.
+//! Trains as data: vehicles in their order, speed and direction.
 
 use crate::solvers::track::{self, Direction, Motion, Vehicle};
 use serde::{Deserialize, Serialize};
 
-/// Vehicles that run together, over one rail.
+/// Vehicles that run coupled, for one rail.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Train {
     pub name: String,
-    /// In the order of the train, the leading one first, each with the distance of its first wheel behind that of the train, m.
+    /// In the order of the train, the leading vehicle first, each with the distance from the first wheel of the train
+    /// to its first wheel, m.
     pub vehicles: Vec<(Vehicle, f64)>,
     /// The largest speed, m/s.
     pub speed: f64,
@@ -15,14 +16,14 @@ pub struct Train {
     pub runs: Runs,
 }
 
-/// Which way the trains of a kind run.
+/// Direction of the trains of a kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Runs {
     /// The train runs towards larger x.
     Forward,
     Backward,
-    /// Every second train the other way, the first one forward.
+    /// The direction alternates; the first train runs forward.
     BothWays,
 }
 
@@ -34,17 +35,17 @@ impl Train {
         AXLES * self.vehicles.len() as u64
     }
 
-    /// Mass over one rail, kg.
+    /// Mass for one rail, kg.
     pub fn mass(&self) -> f64 {
         self.vehicles.iter().map(|(vehicle, _)| vehicle.mass()).sum()
     }
 
-    /// Mass that a wheel carries on average, kg.
+    /// Mean mass per wheel, kg.
     pub fn mean_wheel_mass(&self) -> f64 {
         self.mass() / self.axles() as f64
     }
 
-    /// Static force of every wheel, N, the leading one first: those of a vehicle carry alike.
+    /// Static force of every wheel, N, the leading wheel first; the wheels of a vehicle have equal forces.
     pub fn static_wheel_loads(&self, gravity: f64) -> impl Iterator<Item = f64> + '_ {
         let load = move |vehicle: &Vehicle| vehicle.mass() * gravity / AXLES as f64;
         self.vehicles.iter().flat_map(move |(vehicle, _)| std::iter::repeat_n(load(vehicle), AXLES as usize))
@@ -55,12 +56,12 @@ impl Train {
         self.vehicles.last().map_or(0.0, |(vehicle, offset)| offset + vehicle.wheel_offsets()[3])
     }
 
-    /// The direction of the passage that shows a state of the track.
+    /// The direction of the passage that is recorded for a state of the track.
     pub fn leading_direction(&self) -> Direction {
         if self.runs == Runs::Backward { Direction::Backward } else { Direction::Forward }
     }
 
-    /// The train of the solver, in a direction.
+    /// The train for the solver, in a direction.
     pub fn model(&self, direction: Direction) -> track::Train {
         track::Train { vehicles: self.vehicles.iter().map(|(v, offset)| ((*v).into(), *offset)).collect(), direction }
     }

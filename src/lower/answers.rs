@@ -1,21 +1,21 @@
-//! What a run of a plan will be able to say: which responses it keeps, at which counts and places. Asked before it runs, of
-//! expectations and of studies.
+//! Responses that a run of a plan keeps, with their counts and places. Expectations and studies are checked against
+//! them before the run.
 
 use crate::diag::{Code, Diagnostic};
 use crate::graph::{BedNode, Clock, Graph, Record, Schedule, VolumeUnderTrack};
 use crate::scenario::response::{Expectation, Expression, Measure, Place, Response};
 use crate::scenario::{Scenario, Track};
 
-/// Slack at the ends of an interval of chainage, m: places are sums of spacings.
+/// Tolerance at the ends of an interval of chainage, m, because places are sums of spacings.
 pub const PLACE_TOLERANCE: f64 = 1e-6;
 
-/// What an expression asks for and a run of a graph will not have; `None` where it has all of it.
+/// The measure of an expression that a run of the graph will not have; `None` if the run has all of them.
 pub fn not_kept(expression: &Expression, graph: &Graph, track: &Track) -> Option<String> {
     let (measure, _) = missing(expression, graph, track)?;
     Some(absent(measure, graph.schedule.clock()))
 }
 
-/// Says that nothing was recorded for a measure; `clock` makes a count one of axles or of cycles.
+/// Message that no value was recorded for a measure; `clock` turns a count into axles or cycles.
 pub fn absent(measure: &Measure, clock: fn(u64) -> Clock) -> String {
     let mut text = format!("no value of `{}`", measure.response.name());
     if let Some((from, to)) = measure.over {
@@ -27,7 +27,7 @@ pub fn absent(measure: &Measure, clock: fn(u64) -> Clock) -> String {
     text + " was recorded"
 }
 
-/// What broken bonds need.
+/// Condition for the response `broken_bonds`.
 const BOND: &str = "glued grains: a `granular` with a `bond`, under a track on grains or on a test rig";
 
 /// Expectations of a scene that a run of its plan cannot answer.
@@ -45,35 +45,35 @@ pub(super) fn refusals(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             Lack::Record => format!("`{name}` will not be recorded"),
         };
         let help = match lack {
-            Lack::Response(needs) => format!("it needs {needs}"),
+            Lack::Response(needs) => format!("`{name}` needs {needs}"),
             Lack::Count(counts) => {
                 let counts: Vec<String> = counts.iter().map(u64::to_string).collect();
                 format!(
-                    "recorded are {}: take one of these, or add the count to the `after` of a `record`",
+                    "recorded counts: {}. Use one of these counts, or add the count to `after` of a `record`",
                     counts.join(", ")
                 )
             }
-            Lack::Place => "take a longer span, or one with recorded seats".to_owned(),
-            Lack::Record => format!("keep it: `record {{ quantities = [{name}], at = ... }}`"),
+            Lack::Place => "use a longer span, or a span with recorded seats".to_owned(),
+            Lack::Record => format!("add `record {{ quantities = [{name}], at = ... }}`"),
         };
         Some(Diagnostic::new(Code::E0616, message).label(expectation.span, "cannot be answered").help(help))
     };
     scenario.expectations.iter().filter_map(refused).collect()
 }
 
-/// Why a run has no value of a measure.
+/// Reason why a run has no value of a measure.
 enum Lack {
-    /// Its kind never has the response; what it would need for it.
+    /// This kind of run never has the response; the text states what the response needs.
     Response(&'static str),
-    /// It is recorded at these counts only.
+    /// The response is recorded at these counts only.
     Count(Vec<u64>),
-    /// Nothing that has the response lies on the span.
+    /// No part with the response lies in the span.
     Place,
     /// No `record` asks for the response.
     Record,
 }
 
-/// The first measure of an expression that a run will have no value of.
+/// The first measure of an expression for which a run will have no value.
 fn missing<'a>(expression: &'a Expression, graph: &Graph, track: &Track) -> Option<(&'a Measure, Lack)> {
     match expression {
         Expression::Number(_) => None,
@@ -95,12 +95,13 @@ fn lack(measure: &Measure, graph: &Graph, track: &Track) -> Option<Lack> {
         }
         Schedule::Blocks(blocks) => lack_on_track(measure, graph, track, &blocks.recorded),
         Schedule::Static { .. } => lack_on_track(measure, graph, track, &[0]),
-        // what another program runs, it knows
+        // another program knows the responses of its own schedule
         Schedule::Custom { .. } => None,
     }
 }
 
-/// Why a track has no value of a measure: it keeps tables at the recorded counts, and the histories that a `record` asks for.
+/// Reason why a track has no value of a measure. A track keeps tables at the recorded counts, and the histories of each
+/// `record`.
 fn lack_on_track(measure: &Measure, graph: &Graph, track: &Track, counts: &[u64]) -> Option<Lack> {
     let response = measure.response;
     let trains = graph.blocks().is_some();
@@ -152,7 +153,7 @@ fn lack_on_track(measure: &Measure, graph: &Graph, track: &Track, counts: &[u64]
     if any_seat { off_the_counts(measure, counts) } else { Some(Lack::Place) }
 }
 
-/// Why volumes of grains under a track have no value of a measure.
+/// Reason why volumes of grains under a track have no value of a measure.
 fn lack_in_volumes(measure: &Measure, graph: &Graph) -> Option<Lack> {
     let name = measure.response.name();
     let keeps = |volume: &&VolumeUnderTrack| volume.quantities.iter().any(|quantity| quantity.name() == name);
@@ -176,7 +177,8 @@ fn covers(measure: &Measure, x: f64) -> bool {
     measure.over.is_none_or(|(a, b)| x >= a.min(b) - PLACE_TOLERANCE && x <= a.max(b) + PLACE_TOLERANCE)
 }
 
-/// Why a test rig has none: it keeps what its sleepers do in every cycle, and what volumes show in those that are recorded.
+/// Reason why a test rig has no value of a measure. A rig keeps the responses of sleepers in every cycle, and the
+/// responses of volumes in the recorded cycles.
 fn lack_of_tests(measure: &Measure, bed: &BedNode, cycles: u64, kept: &[u64]) -> Option<Lack> {
     match measure.response {
         Response::ContactPressure if bed.plate.is_some() => {
@@ -202,7 +204,7 @@ fn lack_of_tests(measure: &Measure, bed: &BedNode, cycles: u64, kept: &[u64]) ->
     }
 }
 
-/// Whether `sleepers.csv` holds a value of every seat, at every recorded count; others are read off histories.
+/// Whether `sleepers.csv` holds a value of every seat at every recorded count; other responses come from histories.
 fn has_a_column(response: Response) -> bool {
     response.place() == Place::Seat && !matches!(response, Response::SleeperVelocity | Response::SleeperAcceleration)
 }

@@ -1,21 +1,23 @@
-//! Which bays of a window get grains in the tier `zone`: those in which the track differs from the far field, and an edge beside them that
-//! tells springs beyond how to settle. A settlement law says where forces differ. Beside a transition grains differ further: sleepers hang, and
-//! grains under the next ones move towards the room where nothing presses, which no law of one sleeper knows.
+//! Bays of a window that get grains in the tier `zone`: the bays in which the track differs from the far field, and an
+//! edge of a few bays beside them. The springs beyond settle like the sleepers on this edge. A settlement law shows
+//! where the forces differ. Beside a transition the grains differ over a longer distance: sleepers hang, and grains
+//! under the next sleepers move towards the unloaded grains. A settlement law of a single sleeper does not describe
+//! this.
 
 use super::{Draft, Pass};
 use crate::scenario::{Scenario, Tier};
 use crate::schema::Reads;
 use crate::units::number;
 
-/// Sleepers on grains beyond the last that differs: those beyond the grains settle as these do.
+/// Number of sleepers on grains beyond the last sleeper that differs; the sleepers on springs beyond settle like these.
 const EDGE: usize = 3;
-/// Length of track beside a transition that gets grains even where the law sees no difference, m. On 16 bays of grains sleepers up to -8
-/// (4.8 m) settle otherwise than the far field; by the law only the last two do (docs/statements.md).
+/// Length of track beside a transition that always gets grains, m. On 16 bays of grains the sleepers up to -8 (4.8 m)
+/// settle otherwise than the far field; by the law only the last two do (docs/statements.md).
 const JOINED: f64 = 6.0;
-/// Length of track beside a transition that gets grains where no law can tell, m.
+/// Length of track beside a transition that gets grains if no law runs, m.
 const NEAR: f64 = 10.0;
 
-/// What tells sleepers apart.
+/// Field that decides which sleepers differ.
 pub(super) const READS: Reads = Reads {
     fields: &["solve.tolerance"],
     acts_where: "where grains lie under some sleepers of a track: `substructure = cells` or `zone`",
@@ -46,7 +48,11 @@ impl Pass for Bays {
         let Some(settlement) = draft.by_law.filter(|settlement| settlement.len() == scenario.track.seats.len()) else {
             draft.bays = windows.iter().map(|window| near(scenario, *window)).collect();
             let what = format!("grains within {NEAR} m of a transition");
-            draft.decide(self.name(), what, "no settlement law runs this scene, so nothing tells where it differs");
+            draft.decide(
+                self.name(),
+                what,
+                "no settlement law can run this scene, so the sleepers that settle differently are not known",
+            );
             return;
         };
         let tolerance = scenario.solve.grains.tolerance;
@@ -60,9 +66,9 @@ impl Pass for Bays {
         let most = (0..changes.len()).filter(beyond).map(|seat| changes[seat]).fold(0.0, f64::max);
         let what = format!("grains from {} of the window from {}", spans(&draft.bays), spans(&windows));
         let why = format!(
-            "by law `{}` no sleeper beyond settles otherwise than the far field by more than {} % of the largest settlement (`tolerance`), \
-             {} % at most; grains reach {JOINED} m from a transition at least, because they move from bay to bay, which no law computes; the outermost {EDGE} on grains tell how \
-             springs beyond settle",
+            "by law `{}` every sleeper beyond settles like the far field, to within {} % of the largest settlement (`tolerance`; largest \
+             difference {} %); grains reach at least {JOINED} m from a transition, because grains move from bay to bay and no law \
+             computes this; the springs beyond settle like the outermost {EDGE} sleepers on grains",
             scenario.solve.law.name,
             number((1e3 * tolerance).round() / 10.0),
             number((1e3 * most).round() / 10.0),
@@ -70,26 +76,26 @@ impl Pass for Bays {
         draft.decide(self.name(), what, why);
     }
 
-    /// Leaves grains in all of the window.
+    /// Puts grains in the whole window.
     fn without(&self) -> Option<fn(&mut Draft<'_>)> {
         Some(|draft| draft.bays = wanted(draft.scenario))
     }
 }
 
-/// Chainages between which the scene wants grains, m: all of the track where it says none.
+/// Chainages between which the scene asks for grains, m; the whole track if it states no window.
 pub(super) fn wanted(scenario: &Scenario) -> Vec<[f64; 2]> {
     let all = || vec![[scenario.track.start(), scenario.track.end()]];
     scenario.solve.grains.window.clone().unwrap_or_else(all)
 }
 
-/// The bays of each window that differ by this settlement of every seat, m.
+/// The bays of each window that differ from the far field; `settlement` is the settlement of every seat, m.
 pub(super) fn differing(scenario: &Scenario, settlement: &[f64]) -> Vec<[f64; 2]> {
     let changes = changes(scenario, settlement);
     let tolerance = scenario.solve.grains.tolerance;
     wanted(scenario).into_iter().map(|window| chosen(scenario, &changes, tolerance, window)).collect()
 }
 
-/// By how much each seat settles otherwise than the far field of its section, over the largest settlement of all.
+/// Difference between the settlement of each seat and the far field of its section / largest settlement of all seats.
 fn changes(scenario: &Scenario, settlement: &[f64]) -> Vec<f64> {
     let track = &scenario.track;
     let largest = settlement.iter().fold(0.0, |most: f64, settlement| most.max(settlement.abs()));
@@ -105,7 +111,7 @@ fn changes(scenario: &Scenario, settlement: &[f64]) -> Vec<f64> {
     changes
 }
 
-/// To a millimetre.
+/// Rounds to a millimetre.
 fn rounded(x: f64) -> f64 {
     (1e3 * x).round() / 1e3
 }
@@ -120,8 +126,8 @@ fn on_any(scenario: &Scenario, windows: &[[f64; 2]], seat: usize) -> bool {
     seat.is_ballasted() && windows.iter().any(|window| is_inside(*window, seat.x))
 }
 
-/// The part of a window that gets grains: [`JOINED`] beside its transitions, every sleeper that changes by more than the tolerance, and an
-/// edge of a few bays.
+/// The part of a window that gets grains: [`JOINED`] beside its transitions, every sleeper that differs by more than
+/// the tolerance, and an edge of a few bays.
 fn chosen(scenario: &Scenario, changes: &[f64], tolerance: f64, [left, right]: [f64; 2]) -> [f64; 2] {
     let track = &scenario.track;
     let inside: Vec<usize> = (0..changes.len()).filter(|seat| on_any(scenario, &[[left, right]], *seat)).collect();
@@ -132,7 +138,8 @@ fn chosen(scenario: &Scenario, changes: &[f64], tolerance: f64, [left, right]: [
     let (Some(first), Some(last)) = (places().reduce(f64::min), places().reduce(f64::max)) else {
         return [left, right];
     };
-    // a bay beyond the outermost sleeper: grains end where a whole cell does, and a sleeper needs half a bay before that
+    // one bay beyond the outermost sleeper: grains end with a whole cell, and a sleeper needs half a bay before that
+    // end
     let reach = |beside: Vec<usize>| beside.last().map(|seat| (track.seats[*seat].x, track.bay(*seat)));
     let before: Vec<usize> =
         inside.iter().rev().copied().filter(|seat| track.seats[*seat].x < first).take(EDGE).collect();

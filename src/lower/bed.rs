@@ -1,4 +1,4 @@
-//! The beds of grains that a scene has, as plans for the packer: one for each section with other layers.
+//! Beds of grains of a scene, as plans for the packer: one bed for each section with different layers.
 
 use super::clumps::Clumps;
 use super::crib;
@@ -13,14 +13,15 @@ use crate::solvers::granular::probe::{Outline, Plate, Stillness};
 use crate::solvers::granular::{DashpotMode, Surface};
 use crate::units::number;
 
-/// A cell is this many times as long as the largest grain, at least: then no grain meets itself.
+/// Least length of a cell / diameter of the largest grain: no grain touches its own periodic image.
 const CELL: f64 = 3.2;
-/// Half the width of a bed without sleepers and without a stated width, m.
+/// Half the width of a bed if there are no sleepers and no width is given, m.
 const HALF_WIDTH: f64 = 1.2;
-/// Under the plate, Pa: somewhat below half a wheel load of 98 kN (a 20 t axle) on the 0.39 m2 of half a sleeper.
+/// Pressure under the plate, Pa: slightly less than half a wheel load of 98 kN (a 20 t axle) on the 0.39 m2 of half a
+/// sleeper.
 const PLATE_PRESSURE: f64 = 100e3;
 
-/// Fields of grains and of the bed that they fill.
+/// Fields of grains and of their bed.
 pub(super) const READS: Reads = Reads {
     fields: &[
         "grading.passing",
@@ -61,7 +62,7 @@ pub(super) const READS: Reads = Reads {
     acts_where: WITH_GRAINS,
 };
 
-/// Fields of the volumes in which the answers of grains are wanted.
+/// Fields of the volumes in which responses of grains are recorded.
 pub(super) const VOLUMES: Reads = Reads {
     fields: &["record.depth", "record.volume"],
     acts_where: "where grains are loaded step by step: on a test rig, or under a track with `substructure = zone` or `full`",
@@ -69,22 +70,23 @@ pub(super) const VOLUMES: Reads = Reads {
 
 const WITH_GRAINS: &str = "where grains are modelled: on a test rig, or with `substructure = cells`, `zone` or `full`";
 
-/// What a packed cell becomes part of.
+/// Use of a packed cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BedUse {
-    /// The bed of a track, which held grains close at its ends.
+    /// The bed of a track; fixed grains close its ends.
     Track,
-    /// A rig, whose bed goes on periodically or is a box.
+    /// A test rig; its bed is periodic or a box.
     Rig,
 }
 
-/// A bed for each section that has grains under its sleepers; none twice. Fails with what the packer would refuse.
+/// One bed for each different section with grains under its sleepers. Fails if the packer would refuse a bed.
 pub fn beds(scenario: &Scenario, use_of_it: BedUse) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
     let packings = if use_of_it == BedUse::Rig { scenario.solve.grains.repeats } else { 1 };
     beds_of(scenario, use_of_it, &mut Clumps::made(scenario.solve.seed, packings))
 }
 
-/// The same with spheres in the place of clumps, which take a tenth of a second to make: what clumps are too wide for is not told.
+/// The same beds with spheres instead of clumps, because clumps take a tenth of a second to make. It does not report
+/// clumps that are too wide.
 pub(super) fn beds_of_spheres(scenario: &Scenario, use_of_it: BedUse) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
     beds_of(scenario, use_of_it, &mut Clumps::spheres())
 }
@@ -116,7 +118,7 @@ fn bed(
     let Some((Layer { name: top_name, .. }, top)) = grains.first() else { return Ok(None) };
     let mut notes = Vec::new();
     let (mut layers, mut shapes) = (Vec::new(), Vec::new());
-    // the packer begins at the bottom
+    // the packer starts at the bottom
     for (layer, granular) in grains.iter().rev() {
         let shape = granular.shape.clumps();
         let templates = clumps.widest(shape.as_ref()).map_err(|cause| not_made(layer, granular, &cause))?;
@@ -126,36 +128,38 @@ fn bed(
     let plan = plan(scenario, number, Largest::of(&layers));
     let boxed = confinement(scenario).is_some();
     notes.push(if boxed {
-        "Walls stand around the bed, which is a box.".to_owned()
+        "The bed is a box with walls on all sides.".to_owned()
     } else {
         let spacing = *section.spacing;
         let bays = (plan[0] / spacing).round();
-        format!("The cell is {bays} x {spacing} m long, at least {CELL} times as long as its largest grain.")
+        format!("The cell is {bays} x {spacing} m long, at least {CELL} times the diameter of its largest grain.")
     });
     if section.layers.len() > grains.len() {
-        notes.push("Soil below the grains is a rigid floor while they are packed.".to_owned());
+        notes.push("During packing the soil below the grains is a rigid floor.".to_owned());
     }
     for (layer, granular) in grains.iter().filter(|(_, granular)| *granular.scale != 1.0) {
         let (name, scale) = (&layer.name, *granular.scale);
         notes.push(format!(
-            "Grains of `{name}` are {scale} times as large as in the ground, and their contacts as much stiffer."
+            "Grains of `{name}` are {scale} times as large as the real grains, and their contacts are stiffer by the same factor."
         ));
     }
     if grains.iter().any(|(_, granular)| granular.local_damping.value != top.local_damping.value) {
-        notes.push(format!("A bed has one local damping: {} of its top layer.", *top.local_damping));
+        notes.push(format!("All layers have the local damping of the top layer: {}.", *top.local_damping));
     }
     if grains.iter().any(|(_, granular)| granular.packing.restored != top.packing.restored) {
-        notes.push(format!("Friction comes back in all layers at once, as `{top_name}` says."));
+        notes.push(format!(
+            "Friction and damping return in all layers at the same time, as `{top_name}` states (`packing.restored`)."
+        ));
     }
     if grains.iter().any(|(_, granular)| granular.packing.reloads != top.packing.reloads) {
         let times = top.packing.reloads;
-        notes.push(format!("Loadings of the finished bed (`packing.reloads`): {times}, as `{top_name}` says."));
+        notes.push(format!("Loadings of the finished bed (`packing.reloads`): {times}, as `{top_name}` states."));
     }
     for layer in layers.iter().filter(|layer| layer.lifts_that_fit() < layer.lifts) {
         let (name, asked, fit) = (&layer.name, layer.lifts, layer.lifts_that_fit());
         let times = if fit == 1 { "lift" } else { "lifts" };
         notes.push(format!(
-            "`{name}` is packed in {fit} {times} instead of {asked}: a grain of {} mm would bear the plate of a thinner one alone.",
+            "`{name}` is packed in {fit} {times} instead of {asked}: a single grain of {} mm would carry the plate of a thinner lift.",
             mm(layer.curve.ends()[1])
         ));
     }
@@ -175,7 +179,7 @@ fn bed(
     crib::holds_grains(scenario, number, &recipe)?;
     let recipe = recipe.with_spheres();
     if use_of_it == BedUse::Track && scenario.track.bed.ends == BedEnds::Walls && !boxed {
-        notes.push("The cell is periodic along the track; held grains close the ends of the whole bed.".to_owned());
+        notes.push("The cell is periodic along the track; fixed grains close both ends of the whole bed.".to_owned());
     }
     let plate = plate(scenario, number, &recipe, &mut notes);
     let mut plan = BedPlan::new(section.name.clone(), recipe, shapes, plate);
@@ -183,8 +187,8 @@ fn bed(
     Ok(Some(plan))
 }
 
-/// The footprint of the sleeper on the cell, from the centre line outwards; where the cell is too small for it, or no sleeper is
-/// known, all of the cell.
+/// The footprint of the sleeper on the cell, from the centre line outwards; the whole cell if it is too small for a
+/// sleeper or if there is no sleeper.
 fn plate(scenario: &Scenario, section: usize, recipe: &Recipe, notes: &mut Vec<String>) -> Plate {
     let track = &scenario.track;
     let [length, width] = recipe.plan;
@@ -201,7 +205,7 @@ fn plate(scenario: &Scenario, section: usize, recipe: &Recipe, notes: &mut Vec<S
             plate(Outline::Rectangle { length: sleeper.base_width, width: across }, [0.5 * length, middle])
         }
         None => {
-            notes.push("Its stiffness is felt with a plate over all of the cell.".to_owned());
+            notes.push("Its stiffness is measured with a plate over the whole cell.".to_owned());
             plate(Outline::Whole { area: length * width }, [0.5 * length, 0.5 * width])
         }
     }
@@ -210,9 +214,9 @@ fn plate(scenario: &Scenario, section: usize, recipe: &Recipe, notes: &mut Vec<S
 /// The largest grain of a bed.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Largest {
-    /// Diameter of the ball of its volume, m.
+    /// Diameter of the sphere with the volume of the grain, m.
     pub diameter: f64,
-    /// How far it reaches, m: a clump is longer than its diameter.
+    /// Largest extent of the grain, m: a clump is longer than its diameter.
     pub width: f64,
 }
 
@@ -223,7 +227,8 @@ impl Largest {
     }
 }
 
-/// Length and width of a cell, m: of so many bays that no grain of the largest meets itself; of a box the whole section.
+/// Length and width of a cell, m. A cell has enough bays that the largest grain does not touch its own periodic image;
+/// a box has the length of the section.
 pub(super) fn plan(scenario: &Scenario, number: usize, largest: Largest) -> [f64; 2] {
     let section = &scenario.track.sections[number];
     let spacing = *section.spacing;
@@ -241,7 +246,7 @@ pub(super) fn confinement(scenario: &Scenario) -> Option<f64> {
     loads.iter().find_map(|load| load.confinement).map(|pressure| *pressure)
 }
 
-/// Width of the bed of one rail, or of both, m: from the centre line to the wall, which no sleeper reaches beyond.
+/// Width of the bed of one rail or of both rails, m. No sleeper reaches beyond the side wall.
 pub(super) fn width(scenario: &Scenario, section: usize) -> f64 {
     let track = &scenario.track;
     let lengths = track.seats[track.seats_of(section)].iter().filter_map(|seat| Some(seat.sleeper?.length));
@@ -255,12 +260,12 @@ pub(super) fn width(scenario: &Scenario, section: usize) -> f64 {
 fn filling(layer: &Layer, granular: &Granular, x: f64, templates: Vec<Template>) -> Result<Filling, Diagnostic> {
     let Contact::Linear { stiffness } = granular.contact else {
         let why = format!(
-            "grains of `{}` meet after Hertz, and this version packs grains of a stated contact stiffness",
+            "grains of `{}` have `contact = hertz`; this version packs only `contact = linear` with a `contact_stiffness`",
             layer.name
         );
         return Err(refused(&why, granular.density.origin.span()));
     };
-    // two bodies in series make a contact
+    // a contact is two springs in series
     let normal = 2.0 * *stiffness;
     let mode = if granular.dashpots_pull { DashpotMode::Full } else { DashpotMode::default() };
     let surface = Surface {
@@ -291,7 +296,7 @@ fn filling(layer: &Layer, granular: &Granular, x: f64, templates: Vec<Template>)
     })
 }
 
-/// Whether the layers of grains at one place (m) pack the same bed as those at another, glued or not.
+/// Whether the layers of grains at two places (m) give the same packed bed, glued or not.
 pub(super) fn packs_alike(one: (&[Layer], f64), other: (&[Layer], f64)) -> bool {
     let filled = |(layers, x): (&[Layer], f64)| -> Option<Vec<_>> {
         let grains = layers.iter().filter_map(|layer| Some((layer, layer.granular()?)));
@@ -307,7 +312,7 @@ pub(super) fn packs_alike(one: (&[Layer], f64), other: (&[Layer], f64)) -> bool 
     filled(one) == filled(other)
 }
 
-/// Thicknesses closer than this are one, m.
+/// Thicknesses that differ by less than this count as equal, m.
 const TINY: f64 = 1e-6;
 
 /// A length in mm.
@@ -325,7 +330,7 @@ fn refused(why: &str, at: Option<Span>) -> Diagnostic {
     }
 }
 
-/// Clumps that cannot be made of the surfaces of a layer.
+/// Diagnostic for a layer whose surfaces give no clumps.
 fn not_made(layer: &Layer, granular: &Granular, cause: &TemplatesError) -> Diagnostic {
     let at = match &granular.shape {
         Shape::Clumps { ratio, .. } => ratio.origin.span(),
@@ -334,7 +339,7 @@ fn not_made(layer: &Layer, granular: &Granular, cause: &TemplatesError) -> Diagn
     refused(&format!("grains of `{}`: {cause}", layer.name), at.or(granular.density.origin.span()))
 }
 
-/// A recipe that the packer refuses, told where the scene asks for it.
+/// Diagnostic for a recipe that the packer refuses, at the place in the scene that asks for it.
 fn unpackable(error: &PackingError, scenario: &Scenario, section: &Section) -> Diagnostic {
     let layer = match error {
         PackingError::Number { layer, .. } => layer.as_deref(),
@@ -356,7 +361,7 @@ fn unpackable(error: &PackingError, scenario: &Scenario, section: &Section) -> D
     }
 }
 
-/// Where the scene says a side (m) of the cell.
+/// Place of the text that gives a side (m) of the cell.
 fn side_of(scenario: &Scenario, section: &Section, side: f64) -> Option<Span> {
     let length = section.end - section.start;
     let along = confinement(scenario).is_some() && (length - side).abs() < 1e-9;
@@ -364,13 +369,16 @@ fn side_of(scenario: &Scenario, section: &Section, side: f64) -> Option<Span> {
     if along { section.length_origin.span() } else { width }
 }
 
-/// What to write for a cell whose largest grain is so wide (m): its sides in hundreds of millimetres.
+/// Help for a cell with a largest grain of this width (m): the sides are rounded up to hundreds of millimetres.
 fn larger_cell(scenario: &Scenario, width: f64) -> String {
     let side = (width / GRAIN * 10.0 - 1e-9).ceil() / 10.0;
     let rails = if scenario.solve.grains.both_rails { 1.0 } else { 2.0 };
     let across = format!("`bed_width = {} m per track` or more", number(rails * side));
     match confinement(scenario) {
-        Some(_) => format!("write a section of {} m or longer, and {across}; or cut the grading above", number(side)),
-        None => format!("write {across}; or cut the grading above"),
+        Some(_) => format!(
+            "write a section of {} m or longer, and {across}; or cut off large grains with `cut_above`",
+            number(side)
+        ),
+        None => format!("write {across}; or cut off large grains with `cut_above`"),
     }
 }

@@ -7,10 +7,10 @@ use crate::scenario::{self, Loading, Order, Scenario, Share, Traffic};
 use crate::schema::Reads;
 use crate::units::number;
 
-/// Where the passes of trains act.
+/// Scenes in which the passes for trains act.
 pub(super) const WITH_TRAINS: &str = "where trains run";
 
-/// Fields of trains, of their number, and of what happens between them.
+/// Fields of trains, of traffic, and of tamping and recording between trains.
 const READS: Reads = Reads {
     fields: &[
         "vehicle.axle_load",
@@ -50,11 +50,11 @@ const READS: Reads = Reads {
     acts_where: WITH_TRAINS,
 };
 
-/// The counts at which something is recorded: of axles, and of the cycles of a rig.
+/// The counts at which results are recorded: axles, or cycles of a test rig.
 pub(super) const COUNTS: Reads =
     Reads { fields: &["record.after"], acts_where: "where trains run or a test rig is loaded" };
 
-/// Cuts the axles into blocks, at the counts where something is recorded or done to the track.
+/// Divides the axles into blocks, with ends at the counts of records and tampings.
 pub(super) struct Cut;
 
 impl Pass for Cut {
@@ -85,7 +85,7 @@ fn blocks(draft: &mut Draft<'_>, traffic: &Traffic) -> Option<Blocks> {
     let scenario = draft.scenario;
     let total = *traffic.total;
     let mut update = scenario.solve.update;
-    // counts of a mix have gone to the nearest train
+    // counts of mixed traffic are already rounded to whole trains
     let mut sound = traffic.is_mixed() || whole_trains(draft, traffic, &mut update);
     let of_volumes = scenario.volumes.iter().flat_map(|record| record.after.iter().copied());
     let of_track = scenario.records.iter().flat_map(|record| record.after.iter().copied());
@@ -115,13 +115,19 @@ fn told(tamping: &Tamping) -> (String, String) {
     let after: Vec<String> = tamping.after.iter().map(u64::to_string).collect();
     let what = format!("{} sleepers after {} axles", tamping.seats.len(), after.join(", "));
     let left = number(100.0 * tamping.left);
-    (what, format!("`{}` leaves {left} % of their settlement; their law begins afresh", tamping.name))
+    (
+        what,
+        format!(
+            "`{}` leaves {left} % of the settlement of these sleepers, and their settlement law starts again",
+            tamping.name
+        ),
+    )
 }
 
-/// Blocks of a run at most: each is a passage of every kind of train.
+/// Largest number of blocks of a run; each block is a passage of every kind of train.
 const MOST_BLOCKS: u64 = 20_000;
 
-/// Whether the policy cuts the run into as many blocks as anybody could wait for.
+/// Whether the number of blocks is small enough for a run of reasonable length.
 fn few_enough(draft: &mut Draft<'_>, update: Update, total: u64) -> bool {
     let (mut before, mut blocks) = (0, 0);
     while before < total && blocks <= MOST_BLOCKS {
@@ -133,9 +139,10 @@ fn few_enough(draft: &mut Draft<'_>, update: Update, total: u64) -> bool {
         return true;
     }
     let message =
-        format!("{total} axles make more than {MOST_BLOCKS} blocks between two exchanges of forces and settlement");
-    let mut mistake = Diagnostic::new(Code::E0103, message)
-        .help("let them grow with the axles, `update_every = adaptive(0.003 mm)` or `geometric(4 axles, ratio = 0.2)`");
+        format!("{total} axles make more than {MOST_BLOCKS} blocks, each with an exchange of forces and settlement");
+    let mut mistake = Diagnostic::new(Code::E0103, message).help(
+        "let the blocks grow with the axles: `update_every = adaptive(0.003 mm)` or `geometric(4 axles, ratio = 0.2)`",
+    );
     if let Some(span) = draft.scenario.solve.update_span {
         mistake = mistake.label(span, "too short");
     }
@@ -143,12 +150,12 @@ fn few_enough(draft: &mut Draft<'_>, update: Update, total: u64) -> bool {
     false
 }
 
-/// Whether total and blocks of traffic of one kind are whole trains.
+/// Whether the total and the blocks of traffic with one kind of train are whole trains.
 fn whole_trains(draft: &mut Draft<'_>, traffic: &Traffic, update: &mut Update) -> bool {
     let (train, span) = (&traffic.train, draft.scenario.solve.update_span);
     let sound = divides(draft, *traffic.total, train, "the run", traffic.total.origin.span());
     let blocks = match update {
-        // nobody chose the default for this train
+        // the default is rounded up to whole trains
         Update::Geometric { first, .. } if span.is_none() => {
             *first = first.div_ceil(train.axles()) * train.axles();
             true
@@ -160,7 +167,7 @@ fn whole_trains(draft: &mut Draft<'_>, traffic: &Traffic, update: &mut Update) -
     sound && blocks
 }
 
-/// Whether everything that is recorded is recorded between two trains of one kind.
+/// Whether all recorded counts lie between two trains, for traffic with one kind of train.
 fn between_trains(draft: &mut Draft<'_>, recorded: &[u64], total: u64, train: &scenario::Train) -> bool {
     let axles = train.axles();
     let within: Vec<u64> = recorded.iter().copied().filter(|count| count % axles != 0 && *count != total).collect();
@@ -168,7 +175,7 @@ fn between_trains(draft: &mut Draft<'_>, recorded: &[u64], total: u64, train: &s
         draft.diagnostics.push(
             Diagnostic::new(
                 Code::E0602,
-                format!("{count} recorded axles are no whole number of trains of {axles} axles"),
+                format!("the record after {count} axles is not after a whole number of trains of {axles} axles"),
             )
             .help(format!("record after {} axles", (count / axles).max(1) * axles)),
         );
@@ -176,7 +183,7 @@ fn between_trains(draft: &mut Draft<'_>, recorded: &[u64], total: u64, train: &s
     within.is_empty()
 }
 
-/// What a mix has become in whole trains, and why.
+/// Mixed traffic in whole trains, and the reason.
 fn mix(blocks: &Blocks) -> (String, String) {
     let share = |((train, _), share): ((&Train, &PassagePlan), &Share)| {
         let axles = 100.0 * (share.trains * share.axles) as f64 / blocks.total as f64;
@@ -184,13 +191,13 @@ fn mix(blocks: &Blocks) -> (String, String) {
     };
     let shares: Vec<String> = blocks.kinds().zip(&blocks.sequence.shares).map(share).collect();
     let why = match blocks.sequence.order {
-        Order::Interleaved => "shares go to the nearest whole train; trains are spread evenly over the run",
-        Order::InTurn => "shares go to the nearest whole train; one kind runs after the other",
+        Order::Interleaved => "shares are rounded to whole trains; the trains are spread evenly over the run",
+        Order::InTurn => "shares are rounded to whole trains; one kind of train runs after the other",
     };
     (format!("{}, {} axles in all", shares.join(", "), blocks.total), why.to_owned())
 }
 
-/// Lets one passage stand for all equal trains of a block.
+/// Uses one passage for all equal trains of a block.
 pub(super) struct Shared;
 
 impl Pass for Shared {
@@ -213,7 +220,7 @@ impl Pass for Shared {
         let each = cost.seconds_on_two_cores / work.passages.max(1) as f64;
         let rejected = Rejected {
             what: "a passage of every train".into(),
-            why: "nothing is gained but the error of blocks, which the run measures".into(),
+            why: "it would only remove the error of blocks, which the run measures".into(),
             seconds: Some(each * trains as f64),
         };
         draft.decide_against(self.name(), what, why, vec![rejected]);
@@ -224,7 +231,7 @@ impl Pass for Shared {
     }
 }
 
-/// Every train is a block and runs its own passage.
+/// Makes every train a block with its own passage.
 fn every_train(draft: &mut Draft<'_>) {
     let Some(Schedule::Blocks(blocks)) = &mut draft.schedule else { return };
     blocks.share = false;
@@ -245,15 +252,17 @@ fn divides(draft: &mut Draft<'_>, count: u64, train: &scenario::Train, what: &st
         return true;
     }
     let below = (count / axles).max(1) * axles;
-    let mut mistake =
-        Diagnostic::new(Code::E0602, format!("{what} of {count} axles is no whole number of trains of {axles} axles"))
-            .help(if count < axles {
-                format!("write `{axles} axles`")
-            } else {
-                format!("write `{below} axles` or `{} axles`", below + axles)
-            });
+    let mut mistake = Diagnostic::new(
+        Code::E0602,
+        format!("{what} of {count} axles is not a whole number of trains of {axles} axles"),
+    )
+    .help(if count < axles {
+        format!("write `{axles} axles`")
+    } else {
+        format!("write `{below} axles` or `{} axles`", below + axles)
+    });
     if let Some(span) = span {
-        mistake = mistake.label(span, "does not divide");
+        mistake = mistake.label(span, "not a whole number of trains");
     }
     draft.diagnostics.push(mistake);
     false

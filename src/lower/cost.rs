@@ -1,24 +1,24 @@
-//! What a run of passages will take, before it runs: counts of unknowns and steps, times a measured cost.
+//! Cost of a run of passages, estimated before the run: number of unknowns and steps, times a measured cost.
 
 use super::outlook::Outlook;
 use crate::graph::{Blocks, Cost, PassagePlan, PassageWork, Record, TrackFoot, TrackNode, Train, Work};
 
-/// Seconds of a time step on one core, and of each unknown in it: a straight line through passages of 400 and of 1300 unknowns
-/// (`cargo bench --bench track_passage`, `benches/estimates.py`).
+/// Seconds per time step on one core, and per unknown in a step: a straight line through passages of 400 and of 1300
+/// unknowns (`cargo bench --bench track_passage`, `benches/estimates.py`).
 const STEP: f64 = 3.5e-6;
 const UNKNOWN: f64 = 1.95e-8;
-/// Seconds of a place of the profile of stiffness and of an unknown of the track there: an equilibrium at each.
+/// Seconds per place of the stiffness profile and per unknown of the track: one equilibrium at each place.
 const PLACE: f64 = 3e-8;
-/// Places of the profile in a bay.
+/// Places of the stiffness profile in a bay.
 const PER_BAY: f64 = 4.0;
-/// Seconds of a recorded value: kept, written and drawn.
+/// Seconds per recorded value: kept, written and drawn.
 const VALUE: f64 = 1.5e-6;
-/// Bytes of a recorded value: in its row, and in the columns of the file while it is written.
+/// Bytes per recorded value: in its row, and in the columns of the file during writing.
 const VALUE_BYTES: f64 = 260.0;
-/// Seconds of a state of rest, and of tables and pages of any run.
+/// Seconds of a state of rest, and of the tables and pages of any run.
 const AT_REST: f64 = 0.01;
 const WRITING: f64 = 0.06;
-/// Bytes an unknown: bands and the windows of the inverse.
+/// Bytes per unknown: bands and the windows of the inverse.
 const BYTES: u64 = 6_000;
 
 /// The cost of a track at rest.
@@ -27,7 +27,7 @@ pub(super) fn at_rest(node: &TrackNode) -> Cost {
     cost(AT_REST + WRITING, PassageWork { unknowns, ..PassageWork::default() }, unknowns)
 }
 
-/// The cost of the passages of all blocks, of what is recorded and of the files.
+/// The cost of the passages of all blocks, of the records and of the files.
 pub(super) fn of_blocks(node: &TrackNode, blocks: &Blocks, outlook: &Outlook) -> Cost {
     let unknowns = unknowns(node);
     let Outlook { blocks: count, axles, passages: of_kinds } = outlook;
@@ -56,12 +56,12 @@ fn steps(train: &Train, plan: &PassagePlan) -> u64 {
     (way(train, plan) / train.speed / plan.usual_step()).ceil() as u64
 }
 
-/// How far a train runs in a passage, m.
+/// Distance that a train runs in a passage, m.
 fn way(train: &Train, plan: &PassagePlan) -> f64 {
     plan.right - plan.left - train.wheel_base()
 }
 
-/// Time of the passages of one exchange on two cores over their time on one: they do not need each other.
+/// Time of the passages of one exchange on two cores / time on one core: the passages are independent.
 fn side_by_side(blocks: &Blocks) -> f64 {
     let runners = blocks.block(0, blocks.trains_left(0)).runners();
     let time = |kind: usize| {
@@ -79,7 +79,7 @@ fn side_by_side(blocks: &Blocks) -> f64 {
     if all > 0.0 { cores[0].max(cores[1]) / all } else { 1.0 }
 }
 
-/// Adds what records cost: every value of a passage that is kept.
+/// Adds the cost of the records: every kept value of a passage.
 pub(super) fn with_records(cost: &mut Cost, blocks: &Blocks, records: &[Record]) {
     let of = |record: &Record, (train, plan): (&Train, &PassagePlan)| {
         let near = record.near.map_or(1.0, |near| ((2.0 * near + train.wheel_base()) / way(train, plan)).min(1.0));
@@ -92,7 +92,7 @@ pub(super) fn with_records(cost: &mut Cost, blocks: &Blocks, records: &[Record])
     cost.bytes += (values * VALUE_BYTES) as u64;
 }
 
-/// Nothing of it runs side by side.
+/// A cost without parallel work.
 fn cost(seconds: f64, work: PassageWork, unknowns: usize) -> Cost {
     Cost { seconds, seconds_on_two_cores: seconds, bytes: unknowns as u64 * BYTES, work: Work::Passages(work) }
 }

@@ -1,4 +1,5 @@
-//! Grains between and beside the sleepers, where a scene asks for them: what of them a plan holds, how much they are, and whether they fit.
+//! Grains between and beside the sleepers (cribs and shoulders): their data in the plan, their volume, and whether they
+//! fit.
 
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::{Scenario, Section};
@@ -6,27 +7,27 @@ use crate::solvers::granular::packing::Recipe;
 use crate::solvers::granular::rig::Crib;
 use crate::units::number;
 
-/// The cribs of a section as its plan has them.
+/// The cribs of a section in the plan.
 pub(super) fn planned(section: &Section) -> Option<Crib> {
     section.crib.map(|crib| Crib { height: *crib.height, shoulder: crib.beyond() })
 }
 
-/// The cribs of a section, for people.
+/// The cribs of a section as a sentence.
 pub(super) fn note(section: &Section) -> Option<String> {
     let crib = planned(section)?;
     let grains = section.layers.iter().find(|layer| layer.granular().is_some())?;
     let shoulder = match crib.shoulder {
-        0.0 => "; nothing lies beyond their ends".to_owned(),
-        width => format!(", and {} mm beyond their ends", mm(width)),
+        0.0 => "; there are no grains beyond the ends of the sleepers".to_owned(),
+        width => format!(", and {} mm beyond the ends of the sleepers", mm(width)),
     };
     let height = mm(crib.height);
     Some(format!(
-        "Grains of `{}` lie between the sleepers up to {height} mm above their underside{shoulder}.",
+        "Grains of `{}` lie between the sleepers, up to {height} mm above the underside of the sleepers{shoulder}.",
         grains.name
     ))
 }
 
-/// Space between and beside the sleepers of a section over a length of it, for one rail, m3.
+/// Volume between and beside the sleepers over a length of a section, for one rail, m3.
 pub(super) fn space(scenario: &Scenario, number: usize, length: f64) -> f64 {
     let track = &scenario.track;
     let section = &track.sections[number];
@@ -47,15 +48,16 @@ pub(super) fn holds_grains(scenario: &Scenario, number: usize, recipe: &Recipe) 
         return Ok(());
     }
     let message = format!(
-        "the cribs cannot be filled: grains of `{}` are up to {} mm wide, and the sleepers leave {} mm between them",
+        "the cribs cannot be filled: grains of `{}` are up to {} mm wide, and the gap between the sleepers is {} mm",
         top.name,
         mm(widest),
         mm(gap.max(0.0))
     );
-    let told = Diagnostic::new(Code::E0610, message)
-        .help("write a wider `spacing`, a narrower `base_width`, or `crib = none`; or cut the grading above");
+    let told = Diagnostic::new(Code::E0610, message).help(
+        "write a larger `spacing`, a smaller `base_width`, or `crib = none`; or cut off large grains with `cut_above`",
+    );
     Err(match crib.height.origin.span() {
-        Some(span) => told.label(span, "no grain finds a place there"),
+        Some(span) => told.label(span, "the grains do not fit between the sleepers"),
         None => told,
     })
 }

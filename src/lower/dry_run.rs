@@ -1,19 +1,20 @@
-//! The blocks of an adaptive run, chosen before it runs by the run's own control: the track beside each transition on its supports, under
-//! wheels that stand over one seat after the other. What is dynamic is left out, but for a share of the wheel's force.
+//! The blocks of an adaptive run, chosen before the run by the same control as in the run. The model is the track
+//! beside each transition on its supports, under standing wheels over one seat after the other. Dynamic effects are
+//! only a factor on the wheel force.
 
 use crate::graph::{Block, Blocks, Control, Responses, Runner, SupportNode, TrackNode, Train};
 use crate::solvers::settlement::{Law, Peak, SupportState};
 use crate::solvers::track::{Track, forces_under_wheels};
 
-/// Seats that settle beside a transition and are followed, and seats beyond it that do not.
+/// Number of settling seats beside a transition in the model, and number of seats beyond it that do not settle.
 const FOLLOWED: usize = 20;
 const BEYOND: usize = 8;
-/// Stretches that are followed: further ones are mostly like these.
+/// Number of stretches in the model; further stretches are mostly alike.
 const STRETCHES: usize = 3;
-/// Force of a wheel that runs over its static force.
+/// Dynamic wheel force / static wheel force.
 const DYNAMIC: f64 = 1.05;
 
-/// A run of adaptive blocks.
+/// An estimated run of adaptive blocks.
 pub(super) struct DryRun<'a> {
     blocks: &'a Blocks,
     tolerance: f64,
@@ -23,22 +24,23 @@ pub(super) struct DryRun<'a> {
     control: Control,
 }
 
-/// A part of the track that settles.
+/// A modelled part of the track.
 struct Stretch {
     node: TrackNode,
     track: Track,
     responses: Responses,
     /// Settlement of its seats at the start, m.
     initial: Vec<f64>,
-    /// Its seats that settle.
+    /// Indices of the seats that settle.
     seats: Vec<usize>,
-    /// For each kind of train: force of its wheels and distance of the two of a bogie, N and m, and how many vehicles have such.
+    /// For each kind of train: wheel force (N) and distance of the two wheels of a bogie (m), and number of vehicles
+    /// with these values.
     wheels: Vec<Vec<([f64; 2], u64)>>,
 }
 
-/// By stretch, then by seat that settles.
+/// Index by stretch, then by settling seat.
 type States = Vec<Vec<SupportState>>;
-/// By stretch, kind of train, kind of vehicle and seat that settles.
+/// Index by stretch, kind of train, kind of vehicle and settling seat.
 type Peaks = Vec<Vec<Vec<Vec<Peak>>>>;
 
 impl<'a> DryRun<'a> {
@@ -63,12 +65,12 @@ impl<'a> DryRun<'a> {
         DryRun { blocks, tolerance, cap, stretches, states, control: Control::default() }
     }
 
-    /// Every seat begins its law afresh.
+    /// Starts the settlement law of every seat again.
     pub fn tamp(&mut self, law: &Law) {
         self.states.iter_mut().flatten().for_each(|state| *state = law.fresh());
     }
 
-    /// The next block, as the adaptive step of a run finds it; `middle` is told the passages of every attempt.
+    /// The next block, chosen as in the adaptive step of a run; `middle` receives the passages of every attempt.
     pub fn next(&mut self, before: u64, mut middle: impl FnMut(&[Runner])) -> Block {
         let left = self.blocks.trains_left(before);
         let mut most = left;
@@ -105,7 +107,7 @@ impl<'a> DryRun<'a> {
         self.stretches.iter().zip(states).map(|(stretch, states)| stretch.peaks(states)).collect()
     }
 
-    /// The seats after a block under forces.
+    /// The states of the seats after a block under the peak forces.
     fn after(&self, from: &States, block: &Block, peaks: &Peaks) -> States {
         let mut states = from.clone();
         for ((stretch, states), peaks) in self.stretches.iter().zip(&mut states).zip(peaks) {
@@ -132,7 +134,8 @@ impl Stretch {
         Some(Stretch { track: Track::new(node.model(&responses)).ok()?, node, responses, initial, seats, wheels })
     }
 
-    /// The largest force of a wheel on each support. A track that has no equilibrium bears nothing: the run will say so.
+    /// The largest force of a wheel on each support; 0 if the track has no equilibrium, which the run reports as an
+    /// error.
     fn peaks(&self, states: &[SupportState]) -> Vec<Vec<Vec<Peak>>> {
         let mut settlement = self.initial.clone();
         for (seat, state) in self.seats.iter().zip(states) {
@@ -148,14 +151,14 @@ impl Stretch {
     }
 }
 
-/// The most that a seat has settled between two states, m.
+/// Largest settlement of a seat between two states, m.
 fn largest(from: &States, to: &States) -> f64 {
     let pairs = from.iter().flatten().zip(to.iter().flatten());
     pairs.map(|(a, b)| (a.settlement() - b.settlement()).abs()).fold(0.0, f64::max)
 }
 
-/// The first and the last seat of each stretch: on both sides of every boundary of sections beside which something settles; the middle of
-/// the track where there is none.
+/// The first and the last seat of each stretch: both sides of every section boundary beside settling seats, or the
+/// middle of the track if there is no such boundary.
 fn beside_transitions(track: &TrackNode) -> Vec<[usize; 2]> {
     let (seats, last) = (&track.seats, track.seats.len().saturating_sub(1));
     let reach = |seat: usize| if seats[seat].is_ballasted() { FOLLOWED } else { BEYOND };
@@ -175,14 +178,14 @@ fn beside_transitions(track: &TrackNode) -> Vec<[usize; 2]> {
     }
 }
 
-/// By what two stretches differ: bays, pads, supports and where they lie.
+/// Data by which stretches are compared: bays, pad stiffness, support stiffness and settlement of each seat.
 fn likeness(track: &TrackNode, supports: &[SupportNode], [first, last]: [usize; 2]) -> Vec<[f64; 4]> {
     let seats = track.seats[first..=last].iter().zip(&supports[first..=last]);
     let of = |support: &SupportNode| support.spring.map_or(0.0, |spring| spring.stiffness);
     seats.map(|(seat, support)| [seat.bay, seat.pad_stiffness, of(support), support.settlement]).collect()
 }
 
-/// Forces of the wheels of a train, N, with the distance of two in a bogie, m; vehicles that are alike are counted together.
+/// Wheel forces of a train (N) and distance of the two wheels of a bogie (m); equal vehicles are counted together.
 fn wheels(train: &Train, gravity: f64) -> Vec<([f64; 2], u64)> {
     let mut wheels: Vec<([f64; 2], u64)> = Vec::new();
     for (vehicle, _) in &train.vehicles {

@@ -1,4 +1,4 @@
-//! What layers are to the seats on them: a function of plain data, each answer computed once.
+//! Supports of seats from their layers: a function of plain data; each result is computed once.
 
 use crate::scenario::{ApproachSlab, Stack};
 use crate::solvers::foundation::{Bearing, Below, Footing, FoundationError, Layer, Method};
@@ -10,14 +10,14 @@ const CONCRETE: f64 = 0.2;
 /// Odemark's correction for a plate on softer ground.
 const ODEMARK: f64 = 0.9;
 
-/// What layers are to one seat.
+/// Support of one seat from its layers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Carried {
-    /// N/m.
+    /// Stiffness, N/m.
     pub stiffness: f64,
     /// Pressure on the lowest layer for each newton on the seat, 1/m^2.
     pub onto_subgrade: f64,
-    /// Stiffness over that of the layers before.
+    /// Stiffness / stiffness of the layers before the stretch.
     pub change: f64,
 }
 
@@ -27,29 +27,31 @@ type Found = Result<(f64, f64), FoundationError>;
 /// A sleeper's half on a stack of layers.
 type Stacked = (Bearing, Vec<Layer>);
 
-/// A question that has no answer yet, under its key.
+/// A stack that is not computed yet, with its key.
 type Question<'a> = (&'a Vec<u64>, &'a Stacked);
 
-/// How layers are followed down, and what has been found.
+/// The method for layers, and the results so far.
 pub(super) struct Foundations {
     method: Method,
-    /// The lowest layer goes on without end.
+    /// Whether the lowest layer is infinitely deep.
     quiet_base: bool,
-    /// Answers by the bits of what was asked.
+    /// Results by the bits of the input.
     found: HashMap<Vec<u64>, Found>,
     footings: HashMap<Vec<u64>, Footing>,
 }
 
-/// Thickness of the ground that spreads a load as a plate on it does, m: `0.9 t (E / E_ground)^(1/3)` (Odemark 1949).
+/// Thickness of ground that spreads a load like a plate on it, m: `0.9 t (E / E_ground)^(1/3)` (Odemark 1949).
 fn equivalent(plate: &ApproachSlab, ground: f64) -> f64 {
     *plate.thickness * (ODEMARK * (*plate.youngs_modulus / ground).cbrt()).max(1.0)
 }
 
-/// Layers with a plate in them that displaces what it fills. Of its own compliance the ground below keeps the share `yields`.
+/// Layers with a plate that replaces the layers at its depth. The compliance of the ground below is multiplied by
+/// `yields`.
 ///
-/// In the stress cone it spreads the load as its [`equivalent`] of the ground below. A hinge keeps its end in place. A stiff
-/// plate that turns about it moves by s / L of its far end at a distance s, and a load there turns it by s / L of what it
-/// would at the far end: the compliance of the ground below goes with `(s / L)^2`.
+/// In the stress cone the plate spreads the load like its [`equivalent`] thickness of the ground below. A hinge holds
+/// the end of the plate. The plate rotates about the hinge as a rigid body: at a distance s from the hinge it moves by
+/// s / L of the far end, and a load at s rotates it by s / L of the rotation under the same load at the far end. The
+/// compliance of the ground below is therefore multiplied by `(s / L)^2`.
 fn with_plate(layers: Vec<Layer>, plate: &ApproachSlab, yields: f64) -> Vec<Layer> {
     let (top, bottom) = (*plate.depth, *plate.depth + *plate.thickness);
     let (mut above, mut below) = (Vec::new(), Vec::new());
@@ -89,7 +91,7 @@ fn key(bearing: &Bearing, stack: &[Layer]) -> Vec<u64> {
     plan.into_iter().chain(bearing.to_centre).chain(stack.iter().flat_map(layer)).map(f64::to_bits).collect()
 }
 
-/// The answer for one stack under a bearing.
+/// The result for one stack under a bearing.
 fn solve(footing: &mut Footing, stack: &[Layer], quiet_base: bool) -> Found {
     let below = match stack.last() {
         Some(ground) if quiet_base => {
@@ -102,16 +104,16 @@ fn solve(footing: &mut Footing, stack: &[Layer], quiet_base: bool) -> Found {
 }
 
 impl Foundations {
-    /// Begins without any answer.
+    /// Starts without results.
     pub fn new(method: Method, quiet_base: bool) -> Foundations {
         Foundations { method, quiet_base, found: HashMap::new(), footings: HashMap::new() }
     }
 
-    /// What stacks carry, in their order.
+    /// The supports from stacks of layers, in their order.
     ///
     /// # Errors
     ///
-    /// Where the layers of a seat, or those before, carry no sleeper.
+    /// If the layers of a seat, or the layers before a stretch, cannot carry a sleeper.
     pub fn carried(&mut self, stacks: &[&Stack]) -> Vec<Result<Carried, FoundationError>> {
         let with = |stack: &&Stack, plate: &ApproachSlab, yields: f64| {
             (stack.bearing, with_plate(stack.layers.clone(), plate, yields))
@@ -129,7 +131,7 @@ impl Foundations {
             let pressed = stack.plate.as_ref().and_then(|(_, lever)| Some((*lever, pressed.next()?)));
             let before = stack.before.as_ref().and_then(|_| before.next());
             let (stiffness, onto_subgrade) = found?;
-            // of the load on a hinged plate the structure bears what the ground does not
+            // the structure carries the part of the load on a hinged plate that the ground does not carry
             let onto_subgrade = match pressed {
                 Some((lever, Ok((_, pressure)))) => lever * pressure,
                 _ => onto_subgrade,
@@ -140,18 +142,17 @@ impl Foundations {
         stacks.iter().zip(found).map(carried).collect()
     }
 
-    /// Answers in the order of what is asked; each is computed once, and those under different bearings side by
-    /// side.
+    /// Results in the order of the input; each is computed once, and different bearings are computed in parallel.
     fn answers(&mut self, asked: &[Stacked]) -> Vec<Found> {
         let Foundations { method, quiet_base, found, footings } = self;
         let keys: Vec<Vec<u64>> = asked.iter().map(|(bearing, stack)| key(bearing, stack)).collect();
         let missing: BTreeMap<&Vec<u64>, &Stacked> =
             keys.iter().zip(asked).filter(|(key, _)| !found.contains_key(*key)).collect();
-        // most scenes state their supports: they need no thread pool, which costs a tenth of a check
+        // most scenes state their supports: without a thread pool a check takes a tenth less time
         if missing.is_empty() {
             return keys.iter().map(|key| found[key]).collect();
         }
-        // keys begin with the bearing, so stacks under the same one stand together
+        // keys begin with the bearing, so stacks under the same bearing are adjacent
         let missing: Vec<Question<'_>> = missing.into_iter().collect();
         let groups = missing.chunk_by(|(_, (a, _)), (_, (b, _))| a == b).map(|group| {
             let bearing = group[0].1.0;

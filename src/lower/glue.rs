@@ -1,10 +1,10 @@
-//! Grains that are glued, where a scene says so: what of them a plan holds.
+//! Glued grains: their data in the plan.
 
 use crate::scenario::{Granular, Layer, Scenario};
 use crate::solvers::granular::Glue;
 use crate::solvers::granular::rig::Glued;
 
-/// Lengths closer than this are one, m.
+/// Lengths that differ by less than this count as equal, m.
 const TINY: f64 = 1e-6;
 
 /// Glued parts of a bed that lies between two chainages (m) of a section.
@@ -18,14 +18,15 @@ pub(super) fn along(scenario: &Scenario, section: usize, [left, right]: [f64; 2]
     inside.flat_map(of_part).collect()
 }
 
-/// Glued layers at a chainage (m) of a section, which are so all along their bed; at the end of a glued part those of that part.
+/// Glued layers at a chainage (m) of a section, used for the whole length of a bed; at the end of a glued part the
+/// layers of that part.
 pub(super) fn at_place(scenario: &Scenario, section: usize, x: f64) -> Vec<Glued> {
     let parts = scenario.track.ground(section);
     let here = parts.iter().filter(|part| (part.start - TINY..=part.end + TINY).contains(&x));
     here.map(|part| of_layers(&part.layers).collect()).find(|glued: &Vec<Glued>| !glued.is_empty()).unwrap_or_default()
 }
 
-/// Layers with bonds; grains are numbered from the floor upwards.
+/// Layers with bonds; the layers of grains are numbered from the floor upwards.
 fn of_layers(layers: &[Layer]) -> impl Iterator<Item = Glued> {
     let grains = layers.iter().rev().filter_map(Layer::granular).enumerate();
     grains.filter_map(|(number, grains)| Some(Glued { surface: number as u16, along: None, glue: glue(grains)? }))

@@ -32,18 +32,18 @@ use crate::scenario::Scenario;
 use crate::schema::{Reader, Reads};
 use tier::ChooseTier;
 
-/// What became of a scene.
+/// Result of planning a scene.
 pub struct Lowered {
-    /// The plan; `None` where nothing acts on the track, where a mistake stands against it, or where no tier has one.
+    /// The plan; `None` if nothing acts on the track, if the scene has an error, or if no tier has a plan.
     pub graph: Option<Graph>,
-    /// Where the scene says the parameters of the plan.
+    /// Places in the text from which the parameters of the plan come.
     pub origins: Origins,
-    /// Which fields passes and tiers read, and which of them acted.
+    /// Fields that passes and tiers read, and whether each pass or tier acted.
     pub readers: Vec<Reader>,
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// The passes and tiers by which scenes are planned.
+/// The passes and tiers that plan scenes.
 pub struct Planner {
     tiers: Vec<Box<dyn Tier>>,
     /// Passes of another program, run before the plan is checked.
@@ -52,11 +52,11 @@ pub struct Planner {
     without: Vec<String>,
 }
 
-/// A pass that cannot be left out, or that there is not.
+/// The name of a pass that does not exist or cannot be left out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NoSuchPass {
     pub name: String,
-    /// Those that can be left out.
+    /// Names of the passes that can be left out.
     pub optional: Vec<&'static str>,
 }
 
@@ -78,19 +78,19 @@ impl Default for Planner {
 }
 
 impl Planner {
-    /// With a tier of another program, asked after those of this crate.
+    /// Adds a tier of another program, asked after the tiers of this crate.
     pub fn with_tier(mut self, tier: Box<dyn Tier>) -> Planner {
         self.tiers.push(tier);
         self
     }
 
-    /// With a pass of another program, run after those of this crate.
+    /// Adds a pass of another program, run after the passes of this crate.
     pub fn with_pass(mut self, pass: Box<dyn Pass>) -> Planner {
         self.further.push(pass);
         self
     }
 
-    /// Without a pass, by its name.
+    /// Leaves out the pass with this name.
     pub fn without(mut self, name: &str) -> Result<Planner, NoSuchPass> {
         let optional: Vec<&'static str> =
             self.passes().iter().filter(|pass| pass.without().is_some()).map(|pass| pass.name()).collect();
@@ -104,16 +104,16 @@ impl Planner {
     /// The passes in their order.
     fn passes(&self) -> Vec<Box<dyn Pass + '_>> {
         let mut passes: Vec<Box<dyn Pass + '_>> = vec![
-            // trains first: blocks are counted in whole trains, and every tier runs the same passages
+            // trains first: blocks are counted in whole trains, and all tiers use the same passages
             Box::new(passage::Passages),
             Box::new(blocks::Cut),
-            // every tier stands on the same supports
+            // all tiers use the same supports
             Box::new(supports::Supports),
-            // grains go where the track differs
+            // grains lie in the bays that differ from the far field
             Box::new(bays::Bays),
-            // a tier makes the nodes and knows what they cost
+            // a tier makes the nodes and estimates their cost
             Box::new(ChooseTier(&self.tiers)),
-            // what follows changes a plan that has a cost
+            // the following passes change a plan that has a cost
             Box::new(blocks::Shared),
             Box::new(records::Records),
         ];
@@ -126,7 +126,8 @@ impl Planner {
         self.lower_with(scenario, None)
     }
 
-    /// Lowers a scene of which the settlement of every seat by its law is known, m: a tier with grains asks it where they are needed.
+    /// Lowers a scene. `by_law` is the settlement of every seat by the law of the scene \[m\], from which the tiers
+    /// with grains find the sleepers that need grains.
     pub fn lower_with(&self, scenario: &Scenario, by_law: Option<&[f64]>) -> Lowered {
         let origins = Origins::new(scenario);
         let mut draft = Draft::new(scenario, &origins, by_law);
@@ -150,7 +151,7 @@ impl Planner {
         Lowered { graph, origins, readers, diagnostics }
     }
 
-    /// What its passes and tiers read of a scene, of which the one of that name was taken.
+    /// Fields that the passes and tiers read; `tier` is the name of the tier that was taken.
     pub fn readers(&self, scenario: &Scenario, tier: Option<&str>) -> Vec<Reader> {
         let of_passes = self.passes().into_iter().flat_map(|pass| {
             let left_out = pass.without().is_some() && self.without.iter().any(|name| name == pass.name());
@@ -165,7 +166,7 @@ impl Planner {
     }
 }
 
-/// A borrowed pass is one.
+/// A reference to a pass is also a pass.
 impl Pass for &dyn Pass {
     fn name(&self) -> &'static str {
         (**self).name()
@@ -193,10 +194,10 @@ pub fn lower(scenario: &Scenario) -> Lowered {
     Planner::default().lower(scenario)
 }
 
-/// The plan of a draft, where nothing stands against it and its nodes fit together.
+/// The plan of a draft, if there is no error and its nodes fit together.
 fn finished(draft: Draft<'_>) -> (Option<Graph>, Vec<Diagnostic>) {
     let wrong = draft.is_wrong();
-    // what no load acts on and no train runs on waits for these first
+    // a track without rails and without a load needs these first
     let idle = draft.scenario.loading.is_none() && !draft.scenario.track.has_rails();
     let Draft { supports, nodes, edges, schedule, records, cost, decisions, runs, mut diagnostics, refusals, .. } =
         draft;

@@ -1,21 +1,21 @@
-//! Where the scene says what a parameter of the plan is: the map from the numbers of the graph back to the text.
+//! The map from the parameters of the plan back to their places in the text of the scene.
 
 use crate::diag::Span;
 use crate::scenario::{Loading, Scenario};
 use std::collections::BTreeMap;
 
-/// A parameter of a graph that a person may have written.
+/// A parameter of a graph that may be written in the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Parameter {
-    /// The stiffness of the support under a seat, by its index.
+    /// The stiffness of the support under the seat with this index.
     Support(usize),
-    /// A section of the track, by its index: its length.
+    /// The length of the section with this index.
     Section(usize),
-    /// A train, by its kind: its speed, and the wheel masses and contacts of its first vehicle.
+    /// The speed of a kind of train, and the wheel mass and wheel-rail contact of its first vehicle.
     Speed(usize),
     WheelMass(usize),
     Contact(usize),
-    /// The distance of the bogies of its first vehicle.
+    /// The bogie distance of the first vehicle of a kind of train.
     Bogies(usize),
     TimeStep,
     Gravity,
@@ -29,7 +29,7 @@ pub enum Parameter {
     Memory,
 }
 
-/// The places of the text that parameters come from. One that nobody wrote has none.
+/// The places of the text from which parameters come. A parameter that is not written in the scene has no place.
 #[derive(Debug, Clone, Default)]
 pub struct Origins(BTreeMap<Parameter, Span>);
 
@@ -70,7 +70,7 @@ impl Origins {
         origins
     }
 
-    /// The place of a parameter, where somebody wrote it.
+    /// The place of a parameter, if it is written in the scene.
     pub fn span(&self, parameter: Parameter) -> Option<Span> {
         self.0.get(&parameter).copied()
     }

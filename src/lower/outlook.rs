@@ -1,14 +1,14 @@
-//! What a run will do block by block, before it runs. Prescribed blocks are known, but for those that overshoot; adaptive ones
-//! are chosen as the run will choose them, on the track beside its transitions under wheels that stand.
+//! Estimate of the blocks of a run before it runs. Prescribed blocks are known, except blocks that overshoot. Adaptive
+//! blocks are chosen as in the run, on the track beside its transitions under standing wheels.
 
 use super::dry_run::DryRun;
 use crate::graph::{Blocks, Runner, SupportNode, TrackNode};
 use crate::solvers::settlement::Law;
 
-/// Adaptive blocks that are followed one by one; what goes on longer grows as the last one did.
+/// Number of adaptive blocks that are computed one by one; later blocks are extrapolated.
 const FOLLOWED: u64 = 120;
 
-/// What a run consists of.
+/// Blocks and passages of a run.
 #[derive(Default)]
 pub(super) struct Outlook {
     pub blocks: u64,
@@ -51,7 +51,7 @@ impl Outlook {
         outlook
     }
 
-    /// The same for all axles: blocks grow with the axles so far as they did on average.
+    /// Extrapolates to all axles: the blocks keep their average growth with the axles so far.
     fn going_on(mut self, before: u64, total: u64) -> Outlook {
         let begun = self.axles[0].max(1) as f64;
         let times = (total as f64 / begun).ln() / (before as f64 / begun).ln().max(f64::MIN_POSITIVE);

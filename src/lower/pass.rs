@@ -1,4 +1,4 @@
-//! What a pass is, and what passes work on.
+//! The trait of a pass, and the draft plan that passes change.
 
 use super::Origins;
 use crate::diag::{Diagnostic, has_errors};
@@ -6,57 +6,58 @@ use crate::graph::{Blocks, Cost, Decision, Edge, Node, PassagePlan, Record, Reje
 use crate::scenario::Scenario;
 use crate::schema::Reads;
 
-/// One decision of the planner. The list of passes is the story of a plan; see [`super::Planner`].
+/// One decision of the planner; see [`super::Planner`] for the list of passes.
 pub trait Pass: Send + Sync {
-    /// The name by which it is switched off and told.
+    /// The name of the pass in the plan and in `--without`.
     fn name(&self) -> &'static str;
 
-    /// Which fields of the scene it reads.
+    /// Fields of the scene that the pass reads.
     fn reads(&self) -> &'static [&'static Reads] {
         &[]
     }
 
-    /// Whether it has something to decide about a scene.
+    /// Whether the pass acts on a scene.
     fn acts(&self, _: &Scenario) -> bool {
         true
     }
 
-    /// Decides, and says so.
+    /// Makes the decision and reports it.
     fn run(&self, draft: &mut Draft<'_>);
 
-    /// Leaves the decision out: what stands in its place is dearer and makes no error of its own. `None` of a pass without which
-    /// there is no plan.
+    /// Replacement if the pass is left out: it costs more and adds no error. `None` if there is no plan without the
+    /// pass.
     fn without(&self) -> Option<fn(&mut Draft<'_>)> {
         None
     }
 }
 
-/// A plan on its way through the passes.
+/// A plan that the passes complete step by step.
 pub struct Draft<'a> {
     pub scenario: &'a Scenario,
     pub origins: &'a Origins,
-    /// The passage of each kind of train, in the order of the traffic; none where no train runs.
+    /// The passage of each kind of train, in the order of the traffic; empty if no train runs.
     pub passages: Vec<PassagePlan>,
-    /// The loop over axles, before a tier takes it.
+    /// The loop over axles, before a tier uses it.
     pub blocks: Option<Blocks>,
-    /// Settlement of every seat after all axles by the law of the scene, m; `None` where no tier asks for it or the law cannot run.
+    /// Settlement of every seat after all axles by the law of the scene, m; `None` if no tier asks for it or the law
+    /// cannot run.
     pub by_law: Option<&'a [f64]>,
     /// Chainages between which the tier `zone` has grains, m.
     pub bays: Vec<[f64; 2]>,
     /// The name of the tier that was taken.
     pub tier: Option<&'static str>,
-    /// What carries every seat of a track, as far as the scene or its layers say.
+    /// The support of every seat of a track, as far as it is known from the scene or its layers.
     pub supports: Vec<SupportNode>,
     pub nodes: Vec<Node>,
     pub edges: Vec<Edge>,
     pub schedule: Option<Schedule>,
     pub records: Vec<Record>,
     pub cost: Option<Cost>,
-    /// Whether this version can run what the tier made.
+    /// Whether this version can run the plan of the tier.
     pub runs: bool,
     pub decisions: Vec<Decision>,
     pub diagnostics: Vec<Diagnostic>,
-    /// What stands against running the plan, which can be looked at all the same.
+    /// Reasons against running the plan, which can still be shown.
     pub refusals: Vec<Diagnostic>,
 }
 
@@ -83,12 +84,12 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Says what a pass decided, and why.
+    /// Adds a decision of a pass and its reason.
     pub fn decide(&mut self, pass: &str, what: impl Into<String>, why: impl Into<String>) {
         self.decide_against(pass, what, why, Vec::new());
     }
 
-    /// Says what a pass decided, why, and what it did not take.
+    /// Adds a decision of a pass, its reason, and the rejected alternatives.
     pub fn decide_against(
         &mut self,
         pass: &str,
@@ -107,7 +108,7 @@ impl<'a> Draft<'a> {
             && seats.all(|(seat, node)| seat.pad.is_some() && (!seat.is_ballasted() || node.spring.is_some()))
     }
 
-    /// Whether a mistake stands against the plan.
+    /// Whether the plan has an error.
     pub fn is_wrong(&self) -> bool {
         has_errors(&self.diagnostics)
     }

@@ -1,4 +1,4 @@
-//! Where a passage starts and ends, and in which steps it is integrated.
+//! Start and end of a passage, and its time steps.
 
 use super::blocks::WITH_TRAINS;
 use super::{Draft, Pass};
@@ -8,20 +8,20 @@ use crate::scenario::{Direction, Given, Loading, Scenario, TimeStep, Train};
 use crate::schema::Reads;
 use crate::units::number;
 
-/// Distance that wheels keep from the ends of the model where there is room, m: about three decay lengths of the
+/// Distance between wheels and the ends of the model if the track is long enough, m: about three decay lengths of the
 /// static deflection (methods: 1.6 .. 2.7 m).
 const MARGIN: f64 = 6.0;
 /// The least distance, m.
 const LEAST_MARGIN: f64 = 1.0;
-/// Time step where nothing is said, s: resolves the wheel on its contact spring (about 230 Hz) with forty steps.
+/// Default time step, s: forty steps per period of the wheel on its contact spring (about 230 Hz).
 const TIME_STEP: f64 = 1e-4;
-/// The longest step where steps vary, s, and how often it may be halved.
+/// The longest adaptive step, s, and the number of times that it may be halved.
 const LONGEST_STEP: f64 = 4e-4;
 const HALVINGS: u32 = 5;
-/// Interval of histories where nothing is said, s.
+/// Default interval of histories, s.
 const SAMPLE: f64 = 5e-4;
 
-/// Fields of the run of a train, and of what moves only under one.
+/// Fields of a passage, and fields that act only under a train.
 const READS: Reads = Reads {
     fields: &[
         "solve.integrator",
@@ -37,7 +37,7 @@ const READS: Reads = Reads {
     acts_where: WITH_TRAINS,
 };
 
-/// Where trains start and stop, and in which steps their passages are integrated.
+/// Chooses start and end of passages, and their time steps.
 pub(super) struct Passages;
 
 impl Pass for Passages {
@@ -69,7 +69,7 @@ impl Pass for Passages {
 }
 
 fn weightless(scenario: &Scenario) -> Diagnostic {
-    let message = "trains without weight: wheels stay on the rail by gravity, and here it is 0";
+    let message = "`gravity` is 0: trains have no weight, and wheels do not stay on the rail";
     let mistake = Diagnostic::new(Code::E0618, message).help("write `gravity = 9.81 m/s^2`, or leave it out");
     match scenario.solve.gravity.origin.span() {
         Some(span) => mistake.label(span, "no weight"),
@@ -77,7 +77,7 @@ fn weightless(scenario: &Scenario) -> Diagnostic {
     }
 }
 
-/// The passage of a train; `named` says of which train the decisions are.
+/// The passage of a train; with `named` the decisions state the name of the train.
 fn plan(draft: &mut Draft<'_>, train: &Train, named: bool) -> Option<PassagePlan> {
     let (first, scenario) = (draft.decisions.len(), draft.scenario);
     let (left, right) = ends(draft, scenario, train)?;
@@ -86,7 +86,7 @@ fn plan(draft: &mut Draft<'_>, train: &Train, named: bool) -> Option<PassagePlan
         _ => (time_step(draft, scenario, train)?, None),
     };
     for decision in draft.decisions[first..].iter_mut().filter(|_| named) {
-        decision.what = format!("of `{}`: {}", train.name, decision.what);
+        decision.what = format!("train `{}`: {}", train.name, decision.what);
     }
     let every = scenario.records.iter().filter_map(|r| r.every).map(|every| *every).reduce(f64::min).unwrap_or(SAMPLE);
     let sample_every = (every / time_step).round().max(1.0) as u64;
@@ -105,7 +105,7 @@ fn ends(draft: &mut Draft<'_>, scenario: &Scenario, train: &Train) -> Option<(f6
         let mut mistake = Diagnostic::new(
             Code::E0503,
             format!(
-                "train `{}` is {} m from first to last wheel, the track {} m",
+                "train `{}` is {} m long from first to last wheel, and the track of {} m is too short for it",
                 train.name,
                 number(base),
                 number(length)
@@ -113,14 +113,14 @@ fn ends(draft: &mut Draft<'_>, scenario: &Scenario, train: &Train) -> Option<(f6
         )
         .help(format!("make the track at least {} m long", number((base + 4.0 * MARGIN).ceil())));
         if let Some(span) = span {
-            mistake = mistake.label(span, "the vehicle's bogies stand here");
+            mistake = mistake.label(span, "bogie spacing of its first vehicle");
         }
         draft.diagnostics.push(mistake);
         return None;
     }
     let margin = MARGIN.min(room / 4.0);
     let (mut left, mut right) = (start + margin, end - margin);
-    // `start` and `finish` are of the leading wheel
+    // `start` and `finish` are places of the leading wheel
     let forward = train.direction != Direction::Backward;
     let (at_left, at_right) = if forward {
         (scenario.solve.start, scenario.solve.finish)
@@ -145,7 +145,7 @@ fn ends(draft: &mut Draft<'_>, scenario: &Scenario, train: &Train) -> Option<(f6
                 ),
             );
             if let Some(span) = given.origin.span() {
-                mistake = mistake.label(span, "of the leading wheel");
+                mistake = mistake.label(span, "place of the leading wheel");
             }
             draft.diagnostics.push(mistake);
             return None;
@@ -155,7 +155,7 @@ fn ends(draft: &mut Draft<'_>, scenario: &Scenario, train: &Train) -> Option<(f6
     if right - left < base + LEAST_MARGIN {
         let mut mistake = Diagnostic::new(
             Code::E0503,
-            format!("the passage ends before it begins: {} m are left to run", number((right - left - base).max(0.0))),
+            format!("the passage is too short: the train would run {} m", number((right - left - base).max(0.0))),
         );
         for (given, text) in [(scenario.solve.start, "starts here"), (scenario.solve.finish, "ends here")] {
             if let Some(span) = given.and_then(|g| g.origin.span()) {
@@ -167,22 +167,26 @@ fn ends(draft: &mut Draft<'_>, scenario: &Scenario, train: &Train) -> Option<(f6
     }
     draft.decide(
         "passage",
-        format!("wheels run from {} m to {} m, all on the track from the start", number(left), number(right)),
         format!(
-            "the ends of the rail stay at least {} m away from every wheel",
+            "wheels run from {} m to {} m; all wheels are on the track from the start",
+            number(left),
+            number(right)
+        ),
+        format!(
+            "every wheel stays at least {} m away from the ends of the rail",
             number((left - start).min(end - right))
         ),
     );
     Some((left, right))
 }
 
-/// Seconds in which a wheel runs over the shortest element.
+/// Time in which a wheel crosses the shortest element, s.
 fn transit(scenario: &Scenario, train: &Train) -> f64 {
     let spacing = scenario.track.shortest_bay();
     spacing / f64::from(*scenario.solve.elements_per_bay) / *train.speed
 }
 
-/// The longest of the steps that vary, and how they do.
+/// The longest adaptive step, and the parameters of the adaptive steps.
 fn varying_steps(
     draft: &mut Draft<'_>,
     scenario: &Scenario,
@@ -194,7 +198,7 @@ fn varying_steps(
     draft.decide(
         "time step",
         format!("{} to {} ms", number(shortest * 1e3), number(longest * 1e3)),
-        "halved where the motion changes within a step, doubled where it is calm",
+        "halved if the motion changes within a step, doubled if the motion is smooth",
     );
     (longest, Some(AdaptiveSteps { tolerance, halvings: HALVINGS }))
 }
@@ -225,7 +229,7 @@ fn time_step(draft: &mut Draft<'_>, scenario: &Scenario, train: &Train) -> Optio
     draft.decide(
         "time step",
         format!("{} ms", number(step * 1e3)),
-        "a tenth of an element's transit, and at most 0.1 ms for the contact of wheel and rail",
+        "a tenth of the time in which a wheel crosses an element, and at most 0.1 ms for the contact of wheel and rail",
     );
     Some(step)
 }

@@ -1,5 +1,5 @@
-//! Which histories a run keeps where the scene asks for none: those that the report's figures need, at sleepers beside each
-//! transition and in the far field, before the first and after the last axle.
+//! Histories that a run keeps if the scene has no `record`: the histories of the figures of the report, at sleepers
+//! beside each transition and in the far field, before the first and after the last axle.
 
 use super::{Draft, Pass, cost};
 use crate::graph::{History, Record, Schedule};
@@ -7,9 +7,10 @@ use crate::scenario::{self, Loading, Track};
 
 /// Seats counted from a transition (paper, 4.1): far field, the dip, its edges, the slab's edge and the slab.
 const SEATS: [i32; 6] = [-13, -5, -3, -1, 1, 7];
-/// Distance of the nearest wheel from which nothing happens at a seat, m: a long track would keep hours of rest.
+/// Histories are kept only while a wheel is nearer to the seat than this, m; on a long track a seat is at rest most of
+/// the time.
 const NEAR: f64 = 12.0;
-/// Transitions that get them; of the same form they show the same.
+/// Number of transitions with default histories; further transitions of the same form show the same.
 const TRANSITIONS: usize = 2;
 
 const QUANTITIES: [History; 6] = [
@@ -21,7 +22,7 @@ const QUANTITIES: [History; 6] = [
     History::SleeperAcceleration,
 ];
 
-/// Takes over what the scene records; where it records nothing, adds what the report shows.
+/// Takes the records of the scene; if it has none, adds the histories that the report shows.
 pub(super) struct Records;
 
 impl Pass for Records {
@@ -54,16 +55,16 @@ impl Records {
         let what = format!("histories at seats {} before the first and after the last axle", names.join(", "));
         let after = vec![0, *traffic.total];
         draft.records = vec![Record { quantities: QUANTITIES.to_vec(), seats, after, near: Some(NEAR) }];
-        draft.decide(self.name(), what, "the scene has no `record`, and its report shows them");
+        draft.decide(self.name(), what, "the scene has no `record`, and the report shows these histories");
     }
 }
 
-/// Records of the scene and no other.
+/// Uses only the records of the scene.
 fn only_asked_for(draft: &mut Draft<'_>) {
     draft.records = draft.scenario.records.iter().map(record).collect();
 }
 
-/// The recorded quantities that vary during a passage; tables hold the others.
+/// The recorded quantities that vary during a passage; tables hold the other quantities.
 fn record(record: &scenario::Record) -> Record {
     Record {
         quantities: record.quantities.iter().filter_map(|quantity| History::named(quantity.name())).collect(),
@@ -73,7 +74,7 @@ fn record(record: &scenario::Record) -> Record {
     }
 }
 
-/// Indices of the seats, those that exist; the middle one of a track without transitions.
+/// Indices of the existing seats of [`SEATS`]; the middle seat of a track without transitions.
 fn telling_seats(track: &Track) -> Vec<usize> {
     if track.transitions.is_empty() {
         return if track.seats.is_empty() { vec![] } else { vec![track.seats.len() / 2] };

@@ -1,5 +1,5 @@
-//! What carries each sleeper: the support that the scene states, or the one that the layers of the seat make, by the method of
-//! `solve`. Everything later reads it from the plan.
+//! The support of each sleeper: the support that the scene states, or the support computed from the layers under the
+//! seat by the method of `solve`. All later steps read it from the plan.
 
 use super::foundation::{Carried, Foundations};
 use super::{Draft, Pass};
@@ -8,7 +8,7 @@ use crate::graph::{Rejected, SupportNode};
 use crate::scenario::{Base, Foot, Given, Scenario, Seat, Stack, Support, Track};
 use crate::solvers::foundation::{FoundationError, Method};
 
-/// Finds the support of every seat, once a plan.
+/// Computes the support of every seat, once for each plan.
 pub(super) struct Supports;
 
 impl Pass for Supports {
@@ -19,7 +19,7 @@ impl Pass for Supports {
     fn run(&self, draft: &mut Draft<'_>) {
         let scenario = draft.scenario;
         if !scenario.track.has_rails() {
-            // what carries the sleepers of a rig is its bed
+            // the bed carries the sleepers of a test rig
             return;
         }
         let carried = carried(scenario);
@@ -31,13 +31,13 @@ impl Pass for Supports {
             Method::LayeredElastic { .. } => ["layered elasticity", "the stress cone"],
         };
         let rejected =
-            Rejected { what: other.into(), why: "`support_method` asks for the other".into(), seconds: None };
-        let why = "what lies under these sleepers is known";
+            Rejected { what: other.into(), why: "`support_method` selects the other method".into(), seconds: None };
+        let why = "the layers under these sleepers are known";
         draft.decide_against(self.name(), format!("{what}, by {taken}"), why, vec![rejected]);
     }
 }
 
-/// What layers do to the supports of a track; `None` where they carry none.
+/// Effect of the layers on the supports of a track; `None` if they change none.
 fn done(track: &Track) -> Option<String> {
     let count = |of: fn(&Seat) -> bool| track.seats.iter().filter(|seat| of(seat)).count();
     match (count(stands_on_layers), count(goes_with_layers)) {
@@ -48,7 +48,7 @@ fn done(track: &Track) -> Option<String> {
     }
 }
 
-/// What the layers of each seat are to it; `None` where they, or their moduli, are not known.
+/// Support from the layers of each seat; `None` if the layers or their moduli are not known.
 type OfSeats = Vec<Option<Result<Carried, FoundationError>>>;
 
 fn carried(scenario: &Scenario) -> OfSeats {
@@ -59,22 +59,22 @@ fn carried(scenario: &Scenario) -> OfSeats {
     track.seats.iter().map(|seat| seat.stack.as_ref().and_then(|_| found.next())).collect()
 }
 
-/// Whether the layers carry its sleeper, and nothing that is stated.
+/// Whether the layers give the support of the sleeper, without a stated support.
 pub(super) fn stands_on_layers(seat: &Seat) -> bool {
     matches!(seat.foot, Foot::Sleeper { support: None, .. }) && seat.stack.is_some()
 }
 
-/// Whether its stated support goes with the layers that a stretch has put under it.
+/// Whether the stated support is scaled with the layers that a stretch has put under the seat.
 fn goes_with_layers(seat: &Seat) -> bool {
     seat.stack.as_ref().is_some_and(|stack| stack.before.is_some())
 }
 
-/// The supports of a scene, one a seat, as a plan of its track has them.
+/// The supports of a scene, one for each seat, as in the plan.
 pub fn supports(scenario: &Scenario) -> Vec<SupportNode> {
     nodes(&scenario.track, &carried(scenario))
 }
 
-/// The same scene with every support that is known as a number of its own, for those who change them.
+/// The same scene with every known support as a stated number, for callers that change supports.
 pub fn with_stated_supports(scenario: &Scenario) -> Scenario {
     let mut stated = scenario.clone();
     for (seat, carried) in stated.track.seats.iter_mut().zip(carried(scenario)) {
@@ -103,7 +103,7 @@ fn nodes(track: &Track, carried: &OfSeats) -> Vec<SupportNode> {
     track.seats.iter().zip(carried).map(node).collect()
 }
 
-/// The support under a sleeper: the stated one as the layers change it, or that of the layers.
+/// The support under a sleeper: the stated support, scaled with the layers, or the support from the layers.
 fn support(seat: &Seat, carried: Option<Carried>) -> Option<Support> {
     if !seat.is_ballasted() {
         return None;
@@ -123,7 +123,7 @@ fn support(seat: &Seat, carried: Option<Carried>) -> Option<Support> {
     Some(Support { stiffness, damping, seating: None })
 }
 
-/// Layers that carry no sleeper though one stands on them, each once.
+/// Diagnostics for layers that cannot carry the sleepers on them, one for each stack of layers.
 fn refusals(track: &Track, carried: &OfSeats) -> Vec<Diagnostic> {
     let mut told: Vec<Span> = Vec::new();
     let mut found = Vec::new();
@@ -143,7 +143,10 @@ fn carry_nothing(track: &Track, seat: &Seat, stack: &Stack, wrong: &FoundationEr
         _ => format!("seat {:+}", seat.number),
     };
     let form = &track.sections[seat.section].name;
-    Diagnostic::new(Code::E0407, format!("the layers of trackform `{form}` carry no sleeper at {place}: {wrong}"))
-        .label(stack.span, "its support is computed from these")
-        .help("give every layer a thickness and a modulus there, and sleepers that do not lie on each other")
+    Diagnostic::new(
+        Code::E0407,
+        format!("the layers of trackform `{form}` cannot carry the sleeper at {place}: {wrong}"),
+    )
+    .label(stack.span, "the support is computed from these layers")
+    .help("give every layer a thickness and a modulus there, and make the spacing larger than the width of a sleeper")
 }

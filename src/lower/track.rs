@@ -1,4 +1,4 @@
-//! From the track and trains of the scene to those of the graph: plain numbers of one rail.
+//! Converts the track and the trains of the scene to the graph: plain numbers for one rail.
 
 use crate::graph::{Runs, TrackFoot, TrackNode, TrackSeat, TrackSection, Train};
 use crate::scenario::{
@@ -7,7 +7,7 @@ use crate::scenario::{
 use crate::schema::Reads;
 use crate::solvers::track::{self as solver, Motion, Vehicle};
 
-/// Fields of the track itself, at rest and in motion.
+/// Fields of the track, for loads at rest and for trains.
 pub(super) const READS: Reads = Reads {
     fields: &[
         "rail.mass",
@@ -30,7 +30,7 @@ pub(super) const READS: Reads = Reads {
     acts_where: "where there are rails",
 };
 
-/// Fields of the springs under the sleepers, at rest and in motion.
+/// Fields of the springs under the sleepers, for loads at rest and for trains.
 pub(super) const SUPPORTS: Reads = Reads {
     fields: &["support.stiffness", "support.seating", "seating.stiffness", "seating.closure", "usp.bedding_modulus"],
     acts_where: "where springs carry the sleepers: under test loads on a rail, or with `substructure = law`",
@@ -90,7 +90,7 @@ fn section(section: &Section) -> TrackSection {
     }
 }
 
-/// A pad that is not there has no stiffness, which the solver refuses.
+/// A missing pad has stiffness 0, which the solver refuses.
 fn seat(track: &Track, index: usize) -> TrackSeat {
     let seat = &track.seats[index];
     let (pad_stiffness, pad_damping) = seat.pad.as_ref().map_or((0.0, 0.0), |pad| (*pad.stiffness, *pad.damping));
@@ -146,7 +146,7 @@ pub(super) fn train(train: &scenario::Train) -> Train {
     }
 }
 
-/// How fast it runs.
+/// The speed of a train, constant or along the track.
 fn motion(train: &scenario::Train) -> Motion {
     let Some(profile) = &train.speed_profile else { return Motion::Constant(*train.speed) };
     let points = profile.pieces.iter().flat_map(|piece| piece.knots().into_iter().map(|x| (x, profile.value(x))));

@@ -1,15 +1,14 @@
-//! What only models of grains and soil read: the bed that they fill, how they are computed, and the volumes in which
-//! their answers are wanted.
+//! Data only for models of grains and soil: the bed, the settings of the computation, and the recorded volumes.
 
 use super::{Given, Origin, response::Response};
 use crate::diag::Span;
 use serde::{Deserialize, Serialize};
 
-/// The box that holds the layers.
+/// The box of the layers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Bed {
-    /// Half its width, from the centre line of the track to the side wall, m; `None` is that of the longest sleeper
-    /// and its shoulder.
+    /// Half its width, from the centre line of the track to the side wall, m; `None` for half the longest sleeper plus
+    /// its shoulder.
     pub half_width: Option<Given>,
     pub ends: BedEnds,
     pub base: Base,
@@ -21,11 +20,11 @@ pub enum BedEnds {
     Periodic,
 }
 
-/// What lies under the lowest layer.
+/// The boundary below the lowest layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Base {
     Rigid,
-    /// Lets waves out.
+    /// Waves leave the model.
     Quiet,
 }
 
@@ -38,54 +37,55 @@ impl Default for Bed {
 /// The model under the sleepers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Tier {
-    /// The cheapest that answers.
+    /// The cheapest tier that can run the scene.
     Auto,
     /// A settlement law under each sleeper.
     Law,
-    /// Grains in a periodic cell under each sleeper that differs.
+    /// Grains in a periodic cell for each distinct sleeper.
     Cells,
-    /// Grains under the bays that differ.
+    /// Grains under the bays that differ from the far field.
     Zone,
     /// Grains under the whole softer side.
     Full,
 }
 
 impl Tier {
-    /// Whether it computes with grains.
+    /// Whether the tier uses grains.
     pub fn has_grains(self) -> bool {
         matches!(self, Tier::Cells | Tier::Zone | Tier::Full)
     }
 }
 
-/// How grains and soil are computed.
+/// Settings for grains and soil.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Grains {
     pub tier: Given<Tier>,
-    /// Chainages between which grains are modelled, m, one span a transition; `None` is chosen by the planner.
+    /// Chainages between which grains are modelled, m, one span for each transition; `None` if the planner chooses
+    /// them.
     pub window: Option<Vec<[f64; 2]>>,
-    /// Whether track and grains are solved together, step by step, instead of in turn.
+    /// Whether track and grains are solved together in each time step, instead of in turn.
     pub monolithic: bool,
     /// Whether trains of a block follow each other coupler to coupler, instead of one by one.
     pub continuous: Given<bool>,
-    /// Whether grains give the stiffness of supports from the forces of a passage, instead of from a static load.
+    /// Whether the support stiffness of the grains comes from the forces of a passage instead of a static load.
     pub support_from_passage: bool,
-    /// Whether sleepers on grains turn about their axis across the track, instead of staying level.
+    /// Whether sleepers on grains rotate about their axis across the track.
     pub sleepers_pitch: bool,
-    /// Bays of a periodic cell of grains: 1, 2 or 3.
+    /// Number of bays in a periodic cell of grains: 1, 2 or 3.
     pub cell_bays: u32,
-    /// Time step, s; `None` is chosen by the planner.
+    /// Time step, s; `None` if the planner chooses it.
     pub step: Option<Given>,
-    /// Size of the elements of soil, m; `None` is chosen by the planner.
+    /// Size of the soil elements, m; `None` if the planner chooses it.
     pub soil_element: Option<Given>,
-    /// Error that the planner may make, as share of the largest settlement.
+    /// Error that the planner may make / largest settlement.
     pub tolerance: f64,
-    /// Time that the run may take, s.
+    /// Longest time that the run may take, s.
     pub budget: Option<Given>,
-    /// Memory that it may take, bytes.
+    /// Largest memory that the run may take, bytes.
     pub memory: Option<Given>,
-    /// Whether the bed of both rails is modelled, instead of that of one.
+    /// Whether the bed of both rails is modelled instead of the bed of one rail.
     pub both_rails: bool,
-    /// Packings, each with its own seed.
+    /// Number of packings, each with its own seed.
     pub repeats: u32,
 }
 
@@ -110,27 +110,27 @@ impl Default for Grains {
     }
 }
 
-/// Answers that a person wants from volumes of the layers.
+/// Responses to record in volumes of the layers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct VolumeRecord {
     pub quantities: Vec<Response>,
-    /// Indices into [`super::Track::seats`]: a volume under each.
+    /// Indices into [`super::Track::seats`], with a volume under each seat.
     pub seats: Vec<usize>,
     /// Axle counts at which a passage is recorded.
     pub after: Vec<u64>,
-    /// Sampling interval, s; `None` is chosen by the planner.
+    /// Sampling interval, s; `None` if the planner chooses it.
     pub every: Option<f64>,
-    /// Below the sleeper's base, m; `None` is half the top layer.
+    /// Depth below the base of the sleeper, m; `None` for half the top layer.
     pub depth: Option<f64>,
     pub volume: Volume,
-    /// Where it is asked for; `None` where the default holds.
+    /// Place in the text; `None` for the default.
     pub span: Option<Span>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Volume {
-    /// m.
+    /// Radius, m.
     Sphere { radius: f64 },
-    /// m; across `None` is the whole bed.
+    /// Sizes, m; `across` is `None` for the whole width of the bed.
     Box { along: f64, across: Option<f64>, height: f64 },
 }

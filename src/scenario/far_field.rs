@@ -1,4 +1,4 @@
-//! The far field of a track: what its sleepers do where no transition reaches.
+//! The far field of a track: the responses of sleepers far from every transition.
 
 use super::Track;
 
@@ -6,7 +6,8 @@ use super::Track;
 const DISTANCE: f64 = 10.0;
 
 impl Track {
-    /// Median of values by chainage (m) over the far field; over the half that is farthest from every transition where none is far enough.
+    /// Median of values by chainage (m) in the far field; if no sleeper is far enough, of the half that is farthest
+    /// from every transition.
     pub fn far_field(&self, values: Vec<(f64, f64)>) -> Option<f64> {
         let distance = |x: f64| {
             let distances = self.transitions.iter().map(|transition| (x - transition.x).abs());

@@ -1,24 +1,24 @@
-//! A value together with where it comes from.
+//! A value with its origin.
 
 use crate::diag::Span;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
-/// Where a value of the scene comes from.
+/// The origin of a value of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Origin {
     /// A literal in one of the user's files.
     Written(Span),
     /// A literal in the standard library.
     Library(Span),
-    /// The schema's default.
+    /// A default of the schema.
     Default,
     /// Computed from other values of the scene.
     Derived,
 }
 
 impl Origin {
-    /// The place to point at, where there is one.
+    /// The place in the text, if there is one.
     pub fn span(self) -> Option<Span> {
         match self {
             Origin::Written(span) | Origin::Library(span) => Some(span),
@@ -27,7 +27,7 @@ impl Origin {
     }
 }
 
-/// A value in SI units and its origin. It reads as the bare value.
+/// A value in SI units and its origin. It dereferences to the bare value.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Given<T = f64> {
     pub value: T,

@@ -1,4 +1,4 @@
-//! How the sizes of grains share the mass: sieve curves, and the part of them that is modelled.
+//! Gradings: sieve curves, and the part of them that is modelled.
 
 use super::Given;
 use crate::solvers::granular::grains::{Curve, GradingError};
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct Grading {
     pub name: String,
     pub passing: Passing,
-    /// Smaller and larger grains than these are not modelled, m; the curve has grains in between.
+    /// Sizes below and above which grains are not modelled, m; the curve has grains in between.
     pub cut_below: Option<Given>,
     pub cut_above: Option<Given>,
 }
@@ -17,12 +17,12 @@ pub struct Grading {
 /// Share of the mass in grains below a size.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Passing {
-    /// Size, m, and share of the mass that passes, 0 .. 1: sizes ascend, shares do not fall. Between two sieves the share
-    /// is straight over the logarithm of the size.
+    /// Size, m, and share of the mass that passes, 0 .. 1: sizes ascend, shares do not fall. Between two sieves the
+    /// share is linear in the logarithm of the size.
     Sieves(Vec<[f64; 2]>),
     /// The logarithm of the size is normally distributed by mass.
     LogNormal {
-        /// m.
+        /// Size at which half of the mass is finer, m.
         median: f64,
         /// Standard deviation of the natural logarithm of the size.
         spread: f64,
@@ -46,7 +46,7 @@ impl Passing {
         }
     }
 
-    /// Size below which a share of the mass lies, m: where the curve is level, the smallest such size.
+    /// Size below which a share of the mass lies, m; the smallest such size if the curve is constant there.
     pub fn size(&self, share: f64) -> f64 {
         match self {
             Passing::Sieves(sieves) => {
@@ -62,7 +62,7 @@ impl Passing {
         }
     }
 
-    /// Size of the smallest and of the largest grain of the whole curve, m; a log-normal one has none.
+    /// Size of the smallest and of the largest grain of the whole curve, m; `None` for a log-normal curve.
     pub fn ends(&self) -> [f64; 2] {
         match self {
             Passing::Sieves(sieves) => {
@@ -74,11 +74,11 @@ impl Passing {
     }
 }
 
-/// Share of the mass at each end of a log-normal curve that has no grains.
+/// Share of the mass at each end of a log-normal curve that is left out.
 const TAIL: f64 = 1e-3;
 
 impl Grading {
-    /// The same of grains so many times as large.
+    /// The grading of grains that are larger by a factor.
     pub fn scaled(self, factor: f64) -> Grading {
         let cut = |cut: Option<Given>| cut.map(|cut| Given { value: *cut * factor, ..cut });
         let passing = match self.passing {
@@ -100,8 +100,8 @@ impl Grading {
         self.cut_above.map_or(f64::INFINITY, |cut| *cut).min(self.passing.ends()[1])
     }
 
-    /// The curve of what is modelled, for sampling; a log-normal one by so many points that none of its mass is out of
-    /// place by more than a part in ten thousand, and without the [`TAIL`] at an end that nothing cuts off.
+    /// The modelled curve for sampling. A log-normal curve has so many points that the error of the mass is at most one
+    /// in ten thousand; the [`TAIL`] at an end without a cut is left out.
     pub fn curve(&self) -> Result<Curve, GradingError> {
         let (smallest, largest) = match self.passing {
             Passing::Sieves(_) => (self.smallest(), self.largest()),
@@ -121,7 +121,7 @@ impl Grading {
         Curve::new(&points)
     }
 
-    /// Share of the mass that is modelled: the rest is cut off.
+    /// Share of the mass that is modelled; the rest is cut off.
     pub fn modelled_share(&self) -> f64 {
         self.passing.share(self.largest()) - self.passing.share(self.smallest())
     }
@@ -138,7 +138,7 @@ impl Grading {
         self.passing.size(share).clamp(self.smallest(), self.largest())
     }
 
-    /// Coefficient of uniformity of what is modelled, D60 / D10.
+    /// Coefficient of uniformity of the modelled curve, D60 / D10.
     pub fn uniformity(&self) -> f64 {
         self.d(60.0) / self.d(10.0)
     }
@@ -159,7 +159,7 @@ fn normal(z: f64) -> f64 {
     0.5 + sum * (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt()
 }
 
-/// Where [`normal`] reaches a share, by bisection.
+/// The value at which [`normal`] reaches a share, by bisection.
 fn normal_quantile(share: f64) -> f64 {
     let (mut low, mut high) = (-8.0, 8.0);
     for _ in 0..60 {

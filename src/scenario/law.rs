@@ -1,4 +1,4 @@
-//! By what rule the supports settle under what acts on them.
+//! The settlement law of the supports.
 
 use super::Origin;
 use crate::schema;
@@ -6,20 +6,20 @@ use crate::solvers::settlement::Law;
 use crate::units::{number, parse_unit};
 use serde::{Deserialize, Serialize};
 
-/// A settlement law of the scene, of one half sleeper.
+/// A settlement law of the scene, for half a sleeper.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SettlementLaw {
     pub name: String,
     pub law: Law,
-    /// Range of peak forces per seat that the law was calibrated for, N.
+    /// Range of peak forces per seat for which the law was calibrated, N.
     pub loads: Option<(f64, f64)>,
-    /// Range of axle counts that it was calibrated for.
+    /// Range of axle counts for which the law was calibrated.
     pub cycles: Option<(f64, f64)>,
-    /// Where the scene asks for it.
+    /// Place in the text that names the law.
     pub origin: Origin,
 }
 
-/// An argument of a law's word as the language writes it, from its SI value: `35 kN per seat`, `0.11 mm^-1`.
+/// An argument of a law in the notation of the language, from its SI value: `35 kN per seat`, `0.11 mm^-1`.
 pub fn law_argument(form: &str, argument: &str, value: f64) -> String {
     let word = schema::kind("law").and_then(|k| k.field("form")?.form.word(form));
     let field = word.and_then(|w| w.arguments.iter().find(|a| a.name == argument));

@@ -1,4 +1,4 @@
-//! What of the standard library a scene uses, and how far it can be relied on.
+//! Entries of the standard library that a scene uses, and the reliability of their data.
 
 use crate::diag::Span;
 use serde::{Deserialize, Serialize};
@@ -6,22 +6,22 @@ use serde::{Deserialize, Serialize};
 /// An entry of the standard library.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LibraryEntry {
-    /// With its module: `pads.medium`.
+    /// Name with its module: `pads.medium`.
     pub name: String,
-    /// Where its data comes from.
+    /// Source of its data.
     pub source: String,
     pub evidence: Evidence,
-    /// Where the scene names it; `None` for a default.
+    /// Place in the text that names it; `None` for a default.
     pub span: Option<Span>,
 }
 
-/// How the data of an entry was taken over.
+/// How the data of an entry was obtained.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Evidence {
-    /// From its source.
+    /// Taken from the source.
     Read,
     /// Computed from other data.
     Derived,
-    /// Common knowledge, to be checked before it is relied on.
+    /// Common knowledge; to be checked before use.
     Unchecked,
 }

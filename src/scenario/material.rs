@@ -1,4 +1,4 @@
-//! What lies under the sleepers: layers of granular material and of soil.
+//! Layers under the sleepers: granular materials and soils.
 
 use super::{Given, Grading, Varying};
 use crate::solvers::granular::grains::{self, Angular, ClumpShape, Rule};
@@ -7,7 +7,7 @@ use crate::solvers::granular::shape::Mesh;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A layer of a section; the first of several lies under the sleepers.
+/// A layer of a section; the first layer lies under the sleepers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Layer {
     /// Name of its material.
@@ -26,9 +26,9 @@ pub enum Material {
 /// Ballast or sub-ballast: grains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Granular {
-    /// Grading of what is modelled: `scale` times the real one.
+    /// Grading of the modelled grains: `scale` times the real sizes.
     pub grading: Grading,
-    /// Size of modelled over real grains.
+    /// Size of modelled grains / size of real grains.
     pub scale: Given,
     /// Density of a grain, kg/m^3.
     pub density: Given,
@@ -36,31 +36,32 @@ pub struct Granular {
     pub contact: Contact,
     /// Tangential stiffness of a contact / normal stiffness.
     pub shear_ratio: Given,
-    /// Between grains, under traffic.
+    /// Friction between grains, under traffic.
     pub friction: Given,
-    /// To walls and sleepers.
+    /// Friction on walls and sleepers.
     pub wall_friction: Given,
-    /// Share of the force out of balance that opposes motion, under traffic.
+    /// Local damping: share of the unbalanced force that opposes the motion, under traffic.
     pub local_damping: Given,
-    /// Normal dashpot of a contact, as share of its critical damping, under traffic.
+    /// Normal damping of a contact / critical damping, under traffic.
     pub viscous_damping: Given,
-    /// The same of its shear dashpot.
+    /// Shear damping of a contact / critical damping, under traffic.
     pub shear_damping: Given,
-    /// Whether a dashpot may pull grains that part.
+    /// Whether a dashpot may pull on grains that separate.
     pub dashpots_pull: bool,
     pub packing: Packing,
     pub bond: Option<Bond>,
-    /// Young's modulus of the layer as a continuum, Pa; grains do not read it.
+    /// Young's modulus of the layer as a continuum, Pa; not used by grains.
     pub youngs_modulus: Option<Varying>,
     /// Poisson's ratio of the layer as a continuum.
     pub poisson_ratio: Given,
-    /// At which the layer spreads a load, rad against the vertical.
+    /// Angle from the vertical at which the layer spreads a load, rad.
     pub spread: Given,
 }
 
 impl Granular {
-    /// The same as fewer and larger grains. The stiffness of a layer goes as that of its contacts over the size of its grains, and
-    /// its strength as that of its bonds over their area, so they grow with the size and with its square.
+    /// The same material with fewer and larger grains. The stiffness of a layer is proportional to the contact
+    /// stiffness / grain size, and its strength to the bond strength / grain area. So contact stiffness grows with the
+    /// size, and bond strength with its square.
     pub fn coarsened(self) -> Granular {
         let scale = *self.scale;
         let times = |given: Given, factor: f64| Given { value: *given * factor, ..given };
@@ -71,46 +72,46 @@ impl Granular {
         });
         let contact = match self.contact {
             Contact::Linear { stiffness } => Contact::Linear { stiffness: times(stiffness, scale) },
-            // grows with the size by itself
+            // Hertz stiffness grows with the size without a change
             hertz @ Contact::Hertz { .. } => hertz,
         };
         Granular { grading: self.grading.scaled(scale), contact, bond, ..self }
     }
 }
 
-/// The shape of grains. A grain has the volume of the sphere of its size.
+/// The shape of grains. A grain has the volume of a sphere with the diameter of its size.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Shape {
     Spheres,
-    /// Overlapping spheres that move as one.
+    /// Overlapping spheres that move as one rigid body.
     Clumps {
-        /// Fewest and most spheres of a clump.
+        /// Smallest and largest number of spheres in a clump.
         pebbles: [u32; 2],
         /// Smallest sphere / largest sphere of a clump.
         ratio: Given,
-        /// Overlap of spheres that smooths the surface, rad.
+        /// Overlap of spheres, which determines the smoothness of the surface, rad.
         distance: Given,
         surfaces: Surfaces,
     },
 }
 
-/// Surfaces that the spheres of clumps fill: grains are copies of them.
+/// Surfaces that are filled with the spheres of clumps; grains are copies of them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Surfaces {
-    /// Angular ones, made from the scene's seed.
+    /// Angular shapes, made from the seed of the scene.
     Angular {
         templates: u32,
         /// Shortest / intermediate and intermediate / longest side of the smallest box.
         flatness: Given,
         elongation: Given,
-        /// Radius of edges / radius of the largest inscribed ball.
+        /// Radius of edges / radius of the largest inscribed sphere.
         roundness: Given,
     },
     /// Scans, and surfaces of the library.
     Meshes(Vec<Surface>),
 }
 
-/// A closed surface of a size that means nothing: its grains have those of their grading.
+/// A closed surface. Its size has no meaning, because the grains have the sizes of their grading.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Surface {
     /// Name in its file, or in the library.
@@ -119,7 +120,7 @@ pub struct Surface {
 }
 
 impl Shape {
-    /// The clumps that grains are copies of; `None` for spheres.
+    /// The clump shapes of the grains; `None` for spheres.
     pub fn clumps(&self) -> Option<ClumpShape> {
         let Shape::Clumps { pebbles, ratio, distance, surfaces } = self else { return None };
         let surfaces = match surfaces {
@@ -134,7 +135,7 @@ impl Shape {
     }
 }
 
-/// The normal force of two grains that touch.
+/// The law of the normal force between two grains.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Contact {
     Linear {
@@ -148,19 +149,19 @@ pub enum Contact {
     },
 }
 
-/// How a granular layer is packed.
+/// The packing recipe of a granular layer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Packing {
     pub lifts: u32,
-    /// On each lift, Pa.
+    /// Pressure on each lift, Pa.
     pub pressure: Given,
-    /// Friction while grains are packed; see [`Granular`].
+    /// Friction during packing; see [`Granular`].
     pub friction: Given,
     pub local_damping: Given,
     pub viscous_damping: Given,
-    /// When friction and damping come back.
+    /// When friction and damping return to the values for traffic.
     pub restored: Restored,
-    /// Times that the plate presses the finished bed again.
+    /// Number of times that the plate presses the finished bed again.
     pub reloads: u32,
 }
 
@@ -183,21 +184,21 @@ pub struct Soil {
     pub poisson_ratio: Given,
     /// kg/m^3.
     pub density: Given,
-    /// At which the layer spreads a load, rad against the vertical.
+    /// Angle from the vertical at which the layer spreads a load, rad.
     pub spread: Given,
     pub strength: Strength,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Strength {
-    /// It does not yield.
+    /// The soil does not yield.
     Elastic,
     MohrCoulomb {
         /// Pa.
         cohesion: Given,
         /// rad.
         friction_angle: Given,
-        /// rad, not above the friction angle.
+        /// Angle of dilation, rad, not above the friction angle.
         dilation: Given,
         /// Pa.
         tension: Given,
@@ -213,7 +214,7 @@ impl Layer {
         if let Material::Soil(soil) = &self.material { Some(soil) } else { None }
     }
 
-    /// Young's modulus as a continuum, Pa; `None` where grains are known by their contacts alone.
+    /// Young's modulus as a continuum, Pa; `None` for grains without a modulus.
     pub fn youngs_modulus(&self) -> Option<&Varying> {
         match &self.material {
             Material::Granular(granular) => granular.youngs_modulus.as_ref(),

@@ -1,8 +1,8 @@
-//! The scene in SI units, complete: what `check` makes of the text and what `lower` reads.
+//! The complete scene in SI units, made by `check` from the text and read by `lower`.
 //!
-//! Pure data. Every quantity is of **one rail**: a whole sleeper, vehicle or slab has been halved where the text says
-//! that its value is of a whole. Chainage x grows to the right, x = 0 is the first transition; downward displacement,
-//! settlement and force are positive; every number a person may have written carries its [`Origin`].
+//! Pure data. Every quantity is for **one rail**: a value for a whole sleeper, vehicle or slab has been halved.
+//! Chainage x grows to the right, and x = 0 is the first transition. Downward displacement, settlement and force are
+//! positive. Every number that may be written in the text has its [`Origin`].
 
 mod bed;
 mod far_field;
@@ -38,24 +38,24 @@ use crate::solvers::foundation::Method;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A whole scene, ready to be lowered.
+/// A complete scene, ready for the planner.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scenario {
     pub title: String,
     pub track: Track,
-    /// What acts on the track; `None` is a scene that can be drawn but not run.
+    /// The loads on the track; `None` for a scene that can be drawn but not run.
     pub loading: Option<Loading>,
     pub tampings: Vec<Tamping>,
     pub solve: Solve,
     pub records: Vec<Record>,
-    /// What is wanted from volumes of grains.
+    /// Records of volumes of grains.
     pub volumes: Vec<VolumeRecord>,
     pub expectations: Vec<response::Expectation>,
-    /// Physics rules silenced with a reason.
+    /// Silenced physics rules, each with a reason.
     pub allow: Vec<(String, String)>,
-    /// Physics rules made errors.
+    /// Physics rules that become errors.
     pub deny: Vec<String>,
-    /// Physics rules that speak only because the scene asks for them.
+    /// Physics rules that are off by default and that the scene switches on.
     pub warn: Vec<String>,
     /// Entries of the standard library that the scene uses.
     pub library: Vec<LibraryEntry>,
@@ -68,17 +68,17 @@ pub enum Loading {
     Rig(Vec<RigLoad>),
 }
 
-/// How the answer is computed.
+/// Settings of the computation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Solve {
-    /// By which the supports settle.
+    /// The settlement law of the supports.
     pub law: SettlementLaw,
-    /// Laws that are shown beside it, under the same forces.
+    /// Further laws that are evaluated under the same forces.
     pub other_laws: Vec<SettlementLaw>,
     pub update: Update,
-    /// The word after `update_every`, for messages.
+    /// Place of the value of `update_every`, for messages.
     pub update_span: Option<Span>,
-    /// By which layers become the support of a sleeper.
+    /// The method that computes the support of a sleeper from the layers.
     pub support_method: Method,
     pub integrator: Integrator,
     /// Beam theory of the rail.
@@ -86,22 +86,22 @@ pub struct Solve {
     /// Beam elements between two neighbouring rail seats.
     pub elements_per_bay: Given<u32>,
     pub time_step: TimeStep,
-    /// Chainage of the leading wheel at the start and at the end of a passage, m; `None` is chosen by the planner.
+    /// Chainage of the leading wheel at the start and at the end of a passage, m; `None` if the planner chooses it.
     pub start: Option<Given>,
     pub finish: Option<Given>,
     /// m/s^2.
     pub gravity: Given,
     pub seed: u64,
-    /// What models of grains and soil read.
+    /// Settings for grains and soil.
     pub grains: Grains,
 }
 
 /// Beam theory of the rail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Beam {
-    /// Euler and Bernoulli: bends.
+    /// Euler-Bernoulli: bending only.
     Euler,
-    /// Timoshenko: bends and shears, and its cross-section has a rotary inertia.
+    /// Timoshenko: bending, shear, and rotary inertia of the cross-section.
     Timoshenko,
 }
 
@@ -121,12 +121,12 @@ pub enum TimeStep {
     Auto,
     /// s.
     Fixed(Given),
-    /// Steps as small as the wanted error of a step, relative to the answer, asks for.
+    /// Steps as long as the tolerance allows: the error of a step relative to the largest deflection.
     Adaptive { tolerance: Given },
 }
 
 impl TimeStep {
-    /// Where the scene says something about it.
+    /// Place in the text that sets it.
     pub fn span(self) -> Option<Span> {
         match self {
             TimeStep::Auto => None,
@@ -141,7 +141,7 @@ impl TimeStep {
     }
 }
 
-/// A history that a person asked for.
+/// A requested history.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     pub quantities: Vec<response::Response>,
@@ -149,10 +149,10 @@ pub struct Record {
     pub seats: Vec<usize>,
     /// Axle counts at which a passage is recorded.
     pub after: Vec<u64>,
-    /// Sampling interval, s; `None` is chosen by the planner. The shortest of all records is that of the run.
+    /// Sampling interval, s; `None` if the planner chooses it. The run uses the shortest interval of all records.
     pub every: Option<Given>,
     /// Kept only while a wheel is nearer to the seat than this, m; `None` keeps the whole passage.
     pub near: Option<f64>,
-    /// Whether the state of rail and sleepers is kept whole at those counts.
+    /// Whether the complete state of rail and sleepers is kept at these counts.
     pub states: bool,
 }

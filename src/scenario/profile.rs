@@ -1,15 +1,15 @@
-//! A value that varies along the track: curves side by side, each over its piece of chainage.
+//! A value that varies along the track: a sequence of curves, each over a piece of chainage.
 
 use super::{Given, Origin};
 use serde::{Deserialize, Serialize};
 
-/// Two chainages closer than this are one place, m.
+/// Chainages that differ by less than this count as equal, m.
 const TINY: f64 = 1e-6;
 
-/// A value along the track, in SI and of one rail. Covers what it was asked to cover without gap or overlap.
+/// A value along the track, in SI and for one rail. It covers its range without gap or overlap.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Profile {
-    /// Left to right; at least one.
+    /// Pieces from left to right; at least one.
     pub pieces: Vec<Piece>,
     pub origin: Origin,
 }
@@ -22,12 +22,12 @@ pub struct Piece {
     pub curve: Curve,
 }
 
-/// How a value runs; its end values hold before its first and after its last point.
+/// The shape of a curve; its end values hold before its first and after its last point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Curve {
-    /// Straight between points `[x, value]`; one point is a constant.
+    /// Linear between points `[x, value]`; one point is a constant.
     Linear(Vec<[f64; 2]>),
-    /// A cubic from point to point with level ends: a + (b - a) (3 t^2 - 2 t^3).
+    /// A cubic from point to point with zero slope at both ends: a + (b - a) (3 t^2 - 2 t^3).
     Level([[f64; 2]; 2]),
     /// The natural cubic spline through points `[x, value, second derivative]`.
     Natural(Vec<[f64; 3]>),
@@ -50,7 +50,7 @@ pub struct Cubic {
 }
 
 impl Profile {
-    /// The value at a chainage; where two pieces meet, that of the right one.
+    /// The value at a chainage; at the boundary of two pieces, the value of the right piece.
     pub fn value(&self, x: f64) -> f64 {
         let after = self.pieces.partition_point(|piece| piece.start <= x + TINY);
         self.pieces.get(after.saturating_sub(1)).map_or(0.0, |piece| piece.curve.value(x))
@@ -73,7 +73,7 @@ impl Varying {
         }
     }
 
-    /// Chainages between which the value runs without corner; none where it does not vary.
+    /// Chainages between which the value is smooth; empty if it does not vary.
     pub fn knots(&self) -> Vec<f64> {
         match self {
             Varying::Constant(_) => Vec::new(),
@@ -81,12 +81,13 @@ impl Varying {
         }
     }
 
-    /// The largest value between the points of its curves, exact where these run straight or level out.
+    /// The largest value between the points of its curves, exact for linear curves and for curves with zero slope at
+    /// their points.
     pub fn largest(&self) -> f64 {
         self.extreme(f64::max)
     }
 
-    /// The smallest value, as exact as the largest.
+    /// The smallest value, with the same accuracy as the largest.
     pub fn smallest(&self) -> f64 {
         self.extreme(f64::min)
     }
@@ -103,17 +104,17 @@ impl Varying {
 }
 
 impl Piece {
-    /// Chainages between which the value runs without corner, ascending: both ends and the points between them.
+    /// Chainages between which the value is smooth, ascending: both ends and the points between them.
     pub fn knots(&self) -> Vec<f64> {
         let inside = self.curve.knots().into_iter().filter(|x| *x > self.start + TINY && *x < self.end - TINY);
         [self.start].into_iter().chain(inside).chain([self.end]).collect()
     }
 
-    /// The piece, knot by knot.
+    /// The piece as cubics between its knots.
     pub fn cubics(&self) -> Vec<Cubic> {
         let cubic = |pair: &[f64]| {
             let ends = [pair[0], pair[1]];
-            // beyond its points a curve is level
+            // a curve is constant beyond its points
             let inside = self.curve.covers(0.5 * (ends[0] + ends[1]));
             let curvatures = if inside { ends.map(|x| self.curve.curvature(x)) } else { [0.0; 2] };
             Cubic { ends, values: ends.map(|x| self.curve.value(x)), curvatures }
@@ -197,7 +198,7 @@ impl Curve {
     }
 }
 
-/// The two points around x; beyond the ends the end point.
+/// The two points around x; the end point if x is beyond the ends.
 fn between<const N: usize>(
     points: &[[f64; N]],
     x: f64,

@@ -1,10 +1,10 @@
-//! Responses by name, and the expressions over them that `expect` compares.
+//! Responses by name, and expressions of responses for `expect`.
 
 use crate::diag::Span;
 use crate::syntax::tree::{BinaryOp, Comparison};
 use serde::{Deserialize, Serialize};
 
-/// A quantity that a run yields.
+/// A response: a quantity that a run computes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Response {
@@ -12,15 +12,15 @@ pub enum Response {
     RailSeatLoad,
     /// Force of half a sleeper on its support, N, never negative.
     ContactForce,
-    /// The same without a vehicle.
+    /// Force of half a sleeper on its support without a vehicle, N.
     GravityContactForce,
-    /// `contact_force` over the bearing area of half a sleeper, Pa.
+    /// `contact_force` / bearing area of half a sleeper, Pa.
     ContactPressure,
-    /// Vertical pressure on the lowest layer under `contact_force`, Pa, where the layers are known.
+    /// Vertical pressure on the lowest layer under `contact_force`, Pa, if the layers are known.
     SubgradePressure,
     /// Force of a wheel on the rail, N.
     WheelForce,
-    /// Downward displacement of the rail from the unloaded state of that axle count, m.
+    /// Downward displacement of the rail from the unloaded state at the same axle count, m.
     RailDisplacement,
     /// Level of the unloaded rail below the level as built, m.
     RailLevel,
@@ -28,19 +28,19 @@ pub enum Response {
     RailMoment,
     /// Static stiffness at rail level under a standing wheel, N/m.
     RailStiffness,
-    /// Permanent downward move of a support, that of the start included, m.
+    /// Permanent downward displacement of a support, including the settlement at the start, m.
     Settlement,
     /// Gap under a sleeper of the unloaded track, m.
     Void,
     /// Downward displacement of a sleeper from the unloaded state, m.
     SleeperDisplacement,
-    /// m/s, downward.
+    /// Velocity of a sleeper, m/s, downward.
     SleeperVelocity,
-    /// m/s^2, downward.
+    /// Acceleration of a sleeper, m/s^2, downward.
     SleeperAcceleration,
     /// Stiffness of support and under sleeper pad in series, N/m per seat.
     SupportStiffness,
-    /// Time without contact of sleeper and support during a passage, s.
+    /// Time without contact between sleeper and support during a passage, s.
     ContactLoss,
     /// Mean velocity of the grains in a volume, m/s, downward.
     BallastVelocity,
@@ -48,19 +48,19 @@ pub enum Response {
     BallastAcceleration,
     /// Vertical stress in a volume of grains, Pa.
     BallastStress,
-    /// Share of pores in a volume.
+    /// Porosity of a volume.
     Porosity,
-    /// Mean number of neighbours that a grain of a volume touches.
+    /// Mean number of contacts per grain in a volume.
     CoordinationNumber,
     /// Median settlement far from every transition, m.
     FarFieldSettlement,
-    /// Largest settlement less the far-field one, m.
+    /// Largest settlement - far-field settlement, m.
     DifferentialSettlement,
     /// Number of sleepers with a void.
     VoidedSleepers,
-    /// Share of the bonds between glued grains that have broken.
+    /// Share of broken bonds between glued grains.
     BrokenBonds,
-    /// By how much the softer side of a transition lies below the stiffer one, m: the largest of all transitions.
+    /// Level of the stiffer side of a transition above the softer side, m; the largest value of all transitions.
     SettlementStep,
     /// Largest change of the unloaded level between two wheels of a bogie, m.
     LevelChangeWheelbase,
@@ -68,7 +68,7 @@ pub enum Response {
     LevelChange3m,
 }
 
-/// Where a response exists.
+/// The place of a response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
     Seat,
@@ -79,7 +79,7 @@ pub enum Place {
     Scene,
 }
 
-/// How a field of values becomes one number.
+/// The reduction of a field of values to one number.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reduction {
@@ -88,14 +88,14 @@ pub enum Reduction {
     Mean,
     /// Root of the mean square.
     Rms,
-    /// The value that this share of all values, 0 .. 1, does not exceed; straight between two of them.
+    /// The value that this share of all values, 0 .. 1, does not exceed; linear between two values.
     Percentile(f64),
-    /// Root of the mean square by which the response departs from measured values, given by chainage, m; straight between
+    /// Root mean square of the difference between the response and measured values by chainage, m; linear between
     /// places.
     Misfit(Vec<(f64, f64)>),
-    /// Chainage at which the largest value stands, m.
+    /// Chainage of the largest value, m.
     PlaceOfMax,
-    /// A response that is one number already.
+    /// A response that is a single number.
     Itself,
 }
 
@@ -104,14 +104,14 @@ pub enum Reduction {
 pub struct Measure {
     pub reduction: Reduction,
     pub response: Response,
-    /// Chainage, m, ends included; everywhere where absent.
+    /// Chainages, m, ends included; `None` for the whole track.
     pub over: Option<(f64, f64)>,
-    /// Axle count; the last one where absent.
+    /// Axle count; `None` for the last.
     pub after: Option<u64>,
 }
 
 impl Measure {
-    /// Everywhere, after the last count.
+    /// The measure over the whole track, after the last count.
     pub fn new(reduction: Reduction, response: Response) -> Measure {
         Measure { reduction, response, over: None, after: None }
     }
@@ -134,12 +134,12 @@ pub enum Expression {
     Measure(Measure),
     Binary(Box<Expression>, BinaryOp, Box<Expression>),
     Negate(Box<Expression>),
-    /// A function of one value or more.
+    /// A function of one or more values.
     Function(Function, Vec<Expression>),
 }
 
 impl Expression {
-    /// Whether a run has to say something for it; else it is known from the text.
+    /// Whether its value needs a run; otherwise it is known from the text.
     pub fn needs_a_run(&self) -> bool {
         match self {
             Expression::Number(_) => false,
@@ -151,7 +151,7 @@ impl Expression {
     }
 }
 
-/// A comparison that must hold after the run: one more operand than operators.
+/// A comparison that must hold after the run, with one more operand than operators.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Expectation {
     /// The expression as written, for messages.
@@ -159,7 +159,7 @@ pub struct Expectation {
     pub span: Span,
     pub operands: Vec<Expression>,
     pub operators: Vec<Comparison>,
-    /// The unit in which its numbers read well, and its size in SI.
+    /// The unit for display, and its size in SI.
     pub unit: (String, f64),
 }
 

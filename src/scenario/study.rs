@@ -1,5 +1,5 @@
-//! A study: which values of a scene vary and over what, and what is asked of each point. Pure data; a value that varies is
-//! kept as text of the language, since a point is the scene with those lines edited.
+//! A study: the values of a scene that vary, their ranges, and the requested responses of each point. Pure data. A
+//! varying value is kept as text of the language, because a point is the scene with these fields edited.
 
 use super::response::{Expectation, Expression};
 use crate::diag::Span;
@@ -8,15 +8,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Study {
     pub name: String,
-    /// The header of its declaration.
+    /// Place of the header of its declaration.
     pub span: Span,
     pub axes: Vec<Axis>,
     pub sampling: Sampling,
-    /// Lines edited alike in every point.
+    /// Fields that have the same new value in every point.
     pub set: Vec<Setting>,
-    /// Runs of each point; run r has the seed of the scene + r.
+    /// Number of runs of each point; run r has the seed of the scene + r.
     pub repeats: u32,
-    /// Time of computing on one core that the whole study may take, s, and where it is stated.
+    /// Largest computing time of the whole study on one core, s, and its place in the text.
     pub budget: Option<(f64, Span)>,
     pub objectives: Vec<Objective>,
     pub report: Vec<Measured>,
@@ -26,22 +26,23 @@ pub struct Study {
 /// A value that varies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
-    /// The path as `--set` takes it.
+    /// The path in the notation of `--set`.
     pub path: String,
-    /// Where the path stands.
+    /// Place of the path in the text.
     pub span: Span,
-    /// What stands behind its numbers, such as `MN/m per seat`; empty for plain numbers and for values that are none.
+    /// The text after its numbers, such as `MN/m per seat`; empty for plain numbers and for values that are not
+    /// numbers.
     pub unit: String,
     pub values: Values,
-    /// What the scene itself says there; `None` where it could not be read.
+    /// The value in the scene itself; `None` if it could not be read.
     pub written: Option<Written>,
 }
 
-/// What the scene as it is says where a study varies.
+/// The value of the unchanged scene at a varied path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Written {
     pub text: String,
-    /// In the unit of the axis; `None` where it is no number, or one of another basis.
+    /// Value in the unit of the axis; `None` if it is not a number or has another basis.
     pub number: Option<f64>,
 }
 
@@ -54,14 +55,14 @@ pub enum Values {
 /// One entry of a list.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Choice {
-    /// The value as it would stand in the file.
+    /// The value as text of the language.
     pub text: String,
-    /// In the unit of the axis; `None` where it is no number.
+    /// Value in the unit of the axis; `None` if it is not a number.
     pub number: Option<f64>,
     pub span: Span,
 }
 
-/// How numbers are spread, in the unit of the axis.
+/// The distribution of numbers, in the unit of the axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Spread {
     Uniform {
@@ -111,18 +112,18 @@ pub struct Objective {
     pub of: Measured,
 }
 
-/// An expression of responses under its name.
+/// An expression of responses with its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// The expression as written.
     pub text: String,
     pub expression: Expression,
-    /// The unit in which it reads well, and its size in SI.
+    /// The unit for display, and its size in SI.
     pub unit: (String, f64),
 }
 
 impl Study {
-    /// Everything that is measured, objectives first, each once.
+    /// All measured expressions, objectives first, each once.
     pub fn measured(&self) -> Vec<&Measured> {
         let mut all: Vec<&Measured> = Vec::new();
         for measured in self.objectives.iter().map(|o| &o.of).chain(&self.report) {
@@ -135,7 +136,7 @@ impl Study {
 }
 
 impl Setting {
-    /// The line that it stands for.
+    /// The setting as a line of text.
     pub fn line(&self) -> String {
         format!("{} = {}", self.path, self.value)
     }

@@ -1,4 +1,4 @@
-//! The track at rest: sections side by side, the transitions between them, and every rail seat.
+//! The track at rest: sections, the transitions between them, and every rail seat.
 
 use super::{Bed, Given, Layer, Origin, Profile};
 use crate::diag::Span;
@@ -8,64 +8,64 @@ use crate::units::number;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// The whole track of the model, of one rail.
+/// The whole track of the model, for one rail.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Track {
     pub name: String,
-    /// Left to right, without gaps.
+    /// From left to right, without gaps.
     pub sections: Vec<Section>,
-    /// One between each two neighbouring sections.
+    /// One for each two neighbouring sections.
     pub transitions: Vec<Transition>,
-    /// Left to right; every seat belongs to one section.
+    /// From left to right; every seat belongs to one section.
     pub seats: Vec<Seat>,
     /// Rails beside the running rails, left to right, without overlap.
     pub auxiliary_rails: Vec<AuxiliaryRailSpan>,
-    /// What was said of parts of it: seats and rails have it already.
+    /// The stretches of the track; their values are already in seats and rails.
     pub stretches: Vec<Stretch>,
-    /// Where stretches change the layers of a section, left to right, without overlap.
+    /// Parts in which stretches change the layers of a section, from left to right, without overlap.
     pub groundworks: Vec<Groundwork>,
     pub rail_ends: RailEnds,
-    /// Level of the rail as built, m, positive down, over the whole track; `None` is level.
+    /// Level of the rail as built, m, positive downwards, over the whole track; `None` for a level rail.
     pub irregularity: Option<Profile>,
-    /// What holds the layers.
+    /// The box of the layers.
     pub bed: Bed,
 }
 
-/// What holds the rail at both ends of the model.
+/// Boundary condition of the rail at both ends of the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RailEnds {
     Clamped,
     Pinned,
     Free,
-    /// Ends that let waves out, as if the track went on.
+    /// Waves leave the model, as if the track continued.
     Absorbing,
 }
 
-/// What differs along a part of the track, for its drawing and for rules.
+/// A stretch of the track, for its drawing and for rules.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stretch {
     pub name: String,
     /// Chainage of its ends, m.
     pub start: f64,
     pub end: f64,
-    /// The paths that it sets: `usp`, `pad.stiffness`.
+    /// The paths that the stretch sets: `usp`, `pad.stiffness`.
     pub changes: String,
-    /// Where its `over` stands.
+    /// Place of its `over` in the text.
     pub span: Span,
 }
 
-/// The layers over a part of a section where they are not those of the section.
+/// A part of a section with other layers than the section.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Groundwork {
     /// Chainage of its ends, m.
     pub start: f64,
     pub end: f64,
-    /// Under the sleepers, downwards.
+    /// Layers under the sleepers, from top to bottom.
     pub layers: Vec<Layer>,
     pub approach_slab: Option<ApproachSlab>,
 }
 
-/// A plate in the layers, which it displaces.
+/// An approach slab, which replaces the layers at its depth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ApproachSlab {
     /// m.
@@ -76,30 +76,30 @@ pub struct ApproachSlab {
     pub density: Given,
     /// Depth of its top below the sleepers, m.
     pub depth: Given,
-    /// Chainage of its ends, m; the first is that at the structure.
+    /// Chainage of its ends, m; the first is at the structure.
     pub ends: [f64; 2],
-    /// Whether it rests on the structure there.
+    /// Whether it rests on the structure.
     pub hinged: bool,
 }
 
-/// A part of the track of one trackform.
+/// A part of the track with one trackform.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Section {
-    /// The name of its trackform.
+    /// Name of the trackform.
     pub name: String,
     /// Chainage of its ends, m.
     pub start: f64,
     pub end: f64,
-    /// Where its length is given.
+    /// Origin of its length.
     pub length_origin: Origin,
-    /// `None` in a rig, which loads sleepers.
+    /// `None` in a test rig.
     pub rail: Option<Rail>,
-    /// Sleeper or seat spacing where no stretch says another, m.
+    /// Spacing of sleepers or seats outside stretches that change it, m.
     pub spacing: Given,
     pub slab: Option<Slab>,
-    /// Under the sleepers, downwards; none where the scene has only their supports.
+    /// Layers under the sleepers, from top to bottom; empty if the scene has only supports.
     pub layers: Vec<Layer>,
-    /// Where they are given; where they are not, its trackform.
+    /// Place of the layers in the text, or of the trackform if there are none.
     pub layers_span: Option<Span>,
     /// Grains between and beside its sleepers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -109,9 +109,9 @@ pub struct Section {
 /// Grains of the top layer between the sleepers and beyond their ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Crib {
-    /// Above the underside of the sleepers, m.
+    /// Height above the underside of the sleepers, m.
     pub height: Given,
-    /// Width beyond the ends of the sleepers, m; `None` fills no more than the space between them.
+    /// Width beyond the ends of the sleepers, m; `None` if only the space between the sleepers is filled.
     pub shoulder: Option<Given>,
 }
 
@@ -124,14 +124,14 @@ impl Crib {
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Transition {
-    /// Empty where there is only one and it has no name.
+    /// Name; empty if there is only one transition without a name.
     pub name: String,
     /// Chainage, m.
     pub x: f64,
     pub side: Side,
 }
 
-/// Which side of a transition is the softer one, as x grows.
+/// The softer side of a transition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Side {
     SoftToStiff,
@@ -139,7 +139,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The side of a word of the language.
+    /// The side from its word in the language.
     pub fn of_word(word: &str) -> Option<Side> {
         [Side::SoftToStiff, Side::StiffToSoft].into_iter().find(|side| side.word() == word)
     }
@@ -153,16 +153,17 @@ impl Side {
     }
 }
 
-/// A stiffness of the ground or of a structure in words: `40 MN/m per seat`.
+/// A stiffness of the ground or of a structure as text: `40 MN/m per seat`.
 pub fn seat_stiffness(stiffness: f64) -> String {
     match stiffness {
         k if k.is_finite() => format!("{} MN/m per seat", number((k / 1e5).round() / 10.0)),
-        _ => "no give at all".to_owned(),
+        _ => "infinite stiffness".to_owned(),
     }
 }
 
-/// Static stiffness under a point load, N/m, of a long beam of a bending stiffness EI, N m^2, on a Winkler foundation of a modulus k,
-/// N/m per metre: `2 k / lambda`, lambda = (k / 4 EI)^(1/4). So stiff is a track at rail level, and a slab under one seat.
+/// Static stiffness under a point load, N/m, of a long beam with bending stiffness EI, N m^2, on a Winkler foundation
+/// with modulus k, N/m per metre: `2 k / lambda`, lambda = (k / 4 EI)^(1/4). It is used for a track at rail level, and
+/// for a slab under one seat.
 pub fn point_stiffness(modulus: f64, bending_stiffness: f64) -> f64 {
     2.0 * modulus / (modulus / (4.0 * bending_stiffness)).powf(0.25)
 }
@@ -174,11 +175,11 @@ pub struct Rail {
     pub mass: Given,
     /// Vertical bending stiffness EI, N m^2.
     pub bending_stiffness: Given,
-    /// Shear stiffness kappa G A, N; where Timoshenko's theory is asked for it is given.
+    /// Shear stiffness kappa G A, N; always given for `beam = timoshenko`.
     pub shear_stiffness: Option<Given>,
     /// Rotary inertia rho I of the cross-section, kg m.
     pub rotary_inertia: f64,
-    /// m, for the drawing and the stress in the foot.
+    /// Height, m, for the drawing and the stress in the foot.
     pub height: f64,
 }
 
@@ -186,9 +187,9 @@ pub struct Rail {
 const RAIL_STEEL: f64 = 210e9;
 
 impl Rail {
-    /// Section modulus of the foot, m^3: `I / (h / 2)`, with I of the bending stiffness and steel of 210 GPa and with the
-    /// neutral axis at half the height. It lies lower in a real rail: 353 cm^3 of 60E1 are tabulated as 375 (unchecked), so
-    /// that stresses come out too high rather than too low.
+    /// Section modulus of the foot, m^3: `I / (h / 2)`, with I from the bending stiffness and steel of 210 GPa, and the
+    /// neutral axis at half the height. The neutral axis of a real rail lies lower: for 60E1 the formula gives 353
+    /// cm^3, tables give 375 cm^3 (unchecked). The stresses are therefore rather too high than too low.
     pub fn foot_modulus(&self) -> f64 {
         *self.bending_stiffness / RAIL_STEEL / (0.5 * self.height)
     }
@@ -203,7 +204,7 @@ pub struct AuxiliaryRailSpan {
 }
 
 impl AuxiliaryRailSpan {
-    /// What is left of it outside of a span.
+    /// The parts outside a span.
     pub fn without(self, start: f64, end: f64) -> Vec<AuxiliaryRailSpan> {
         let left = AuxiliaryRailSpan { end: self.end.min(start), ..self.clone() };
         let right = AuxiliaryRailSpan { start: self.start.max(end), ..self };
@@ -211,14 +212,14 @@ impl AuxiliaryRailSpan {
     }
 }
 
-/// Auxiliary rails as **one rail** carries them: half of what they are of the whole track.
+/// Auxiliary rails for **one rail**: half of the auxiliary rails of the whole track.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AuxiliaryRails {
-    /// How many the whole track has.
+    /// Number of auxiliary rails of the whole track.
     pub count: Given<u32>,
-    /// `count / 2` times mass, stiffnesses and rotary inertia of one of them.
+    /// `count / 2` times mass, stiffnesses and rotary inertia of one auxiliary rail.
     pub rail: Rail,
-    /// Under them at each sleeper: `count / 2` times one pad.
+    /// Pads at each sleeper: `count / 2` times one pad.
     pub pad: Pad,
 }
 
@@ -244,50 +245,52 @@ pub struct Slab {
     pub foundation_damping: Given,
 }
 
-/// What carries half a sleeper: a spring and a damper without tension.
+/// The support of half a sleeper: a spring and a damper without tension.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Support {
     /// N/m.
     pub stiffness: Given,
     /// N s/m.
     pub damping: Given,
-    /// Softer while the sleeper seats itself.
+    /// The softer first part of the compression, if there is one.
     pub seating: Option<Seating>,
 }
 
-/// The first part of a support's compression: unloaded ballast is far softer than ballast under a wheel.
+/// The first part of the compression of a support: unloaded ballast is much softer than ballast under a wheel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Seating {
-    /// N/m, not above that of the support.
+    /// N/m, not above the stiffness of the support.
     pub stiffness: Given,
-    /// Compression up to which it holds, m.
+    /// Compression at which the full stiffness of the support begins, m.
     pub closure: Given,
 }
 
 /// The under sleeper pad under half a sleeper.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Usp {
-    /// Bedding modulus times half the sleeper's base area, N/m.
+    /// Bedding modulus x half the base area of the sleeper, N/m.
     pub stiffness: Given,
     /// N s/m.
     pub damping: Given,
-    /// m, for the drawing.
+    /// m, for the drawing and for the mass of the pad on grains.
     pub thickness: f64,
 }
 
 impl Support {
-    /// Support and under sleeper pad, where there is one, in series.
+    /// Support and under sleeper pad in series, if there is a pad.
     ///
-    /// Each is a spring beside a damper: Z = k + i w c. In series 1/Z = 1/Z1 + 1/Z2, and to first order in the frequency w
+    /// Each is a spring beside a damper: Z = k + i w c. In series 1/Z = 1/Z1 + 1/Z2, and to first order in the
+    /// frequency w
     ///
     /// ```text
     /// Z = k1 k2 / (k1 + k2) + i w (c1 k2^2 + c2 k1^2) / (k1 + k2)^2
     /// ```
     ///
-    /// because a part takes the share k2 / (k1 + k2) or k1 / (k1 + k2) of the compression, and dissipates with its square.
-    /// The next term is of the order (w c / k)^2: with damping times below 1 ms it is 4 % at 30 Hz, the passing of axles, and the
-    /// stiffness of the two dampers alone takes over far above. The softer first part of a support runs in series too: it ends
-    /// at the same force, so the pad's compression under that force is added to its closure.
+    /// because the parts have the shares k2 / (k1 + k2) and k1 / (k1 + k2) of the compression, and dissipate with the
+    /// square of these shares. The next term is of the order (w c / k)^2: with damping times below 1 ms it is 4 % at 30
+    /// Hz, the frequency of passing axles; far above, the two dampers alone determine the stiffness. The softer first
+    /// part of a support is also in series with the pad: it ends at the same force, so the compression of the pad under
+    /// this force is added to its closure.
     pub fn below(&self, usp: Option<&Usp>) -> Spring {
         let (k, c) = (*self.stiffness, *self.damping);
         let seating = self.seating.map(|s| (*s.stiffness, *s.closure));
@@ -299,68 +302,70 @@ impl Support {
     }
 }
 
-/// A difference of two places without the last digits of their sums.
+/// A difference of two chainages, rounded to remove rounding errors.
 fn tidy(x: f64) -> f64 {
     (x * 1e9).round() / 1e9
 }
 
-/// A rail seat: the pad under the rail and what it stands on; in a rig half a sleeper.
+/// A rail seat: the rail pad and its foot; in a test rig half a sleeper.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Seat {
-    /// Counted from the transition `transition`: ..., -2, -1 on its softer side, +1, +2, ... on its stiffer side.
+    /// Number counted from the transition `transition`: ..., -2, -1 on its softer side, +1, +2, ... on its stiffer
+    /// side.
     pub number: i32,
-    /// Index into [`Track::transitions`]; 0 too on a track without one, where seats count from the left end.
+    /// Index into [`Track::transitions`]; also 0 on a track without a transition, with seats counted from the left end.
     pub transition: usize,
     /// Chainage, m.
     pub x: f64,
     /// Index into [`Track::sections`].
     pub section: usize,
-    /// `None` where there is no rail.
+    /// `None` if there is no rail.
     pub pad: Option<Pad>,
     pub foot: Foot,
-    /// The whole sleeper, where there is one whose size is known.
+    /// The whole sleeper, if there is one of known size.
     pub sleeper: Option<SleeperBody>,
-    /// Permanent settlement of its support at the start, m; 0 where nothing settles.
+    /// Permanent settlement of its support at the start, m; 0 if the support cannot settle.
     pub initial_settlement: Given,
-    /// What lies under it; `None` where layers or their moduli are not known.
+    /// The layers under it; `None` if the layers or their moduli are not known.
     pub stack: Option<Stack>,
 }
 
-/// The layers under one seat, as plain numbers of its place.
+/// The layers under one seat, as plain numbers at its chainage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stack {
-    /// How half of the sleeper lies, and how far its neighbours are.
+    /// Bearing area of half the sleeper, and the distances of its neighbours.
     pub bearing: foundation::Bearing,
-    /// Downwards.
+    /// From top to bottom.
     pub layers: Vec<foundation::Layer>,
-    /// An approach slab in these layers, and how far the seat is from its hinge, as share of its length.
+    /// An approach slab in these layers, and distance of the seat from its hinge / length of the slab.
     pub plate: Option<(ApproachSlab, f64)>,
-    /// The layers with which the stated support of the seat goes, where a stretch has replaced them.
+    /// The layers to which the stated support of the seat refers, if a stretch has replaced them.
     pub before: Option<Vec<foundation::Layer>>,
-    /// Damping over stiffness of a support that these layers make, s.
+    /// Damping / stiffness of a support from these layers, s.
     pub damping_time: Given,
-    /// Where they are given.
+    /// Place of the layers in the text.
     pub span: Span,
 }
 
 /// Size of a whole sleeper.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SleeperBody {
-    /// Across and along the track, and height, m.
+    /// Length across the track, width along the track, and height, m.
     pub length: f64,
     pub base_width: f64,
     pub height: f64,
-    /// Area that bears on the ballast, m^2.
+    /// Area that rests on the ballast, m^2.
     pub base_area: f64,
-    /// Between the rails, m.
+    /// Distance between the two rail seats, m.
     pub seat_distance: f64,
 }
 
-/// Nearer to its hinge than this share of its length a plate is as stiff as there: the ground must keep a modulus.
+/// Least distance from the hinge / length of a plate: the modulus of the ground below must stay finite.
 const AT_HINGE: f64 = 0.05;
 
 impl ApproachSlab {
-    /// How far a load at a chainage (m) is from the hinge, as share of the length: by the lever, what of the load the ground bears.
+    /// Distance of a load at a chainage (m) from the hinge / length of the slab: the share of the load that the ground
+    /// carries by the lever rule.
     pub fn lever(&self, x: f64) -> f64 {
         let [structure, far] = self.ends;
         if self.hinged { ((x - structure) / (far - structure)).abs().clamp(AT_HINGE, 1.0) } else { 1.0 }
@@ -368,8 +373,8 @@ impl ApproachSlab {
 }
 
 impl SleeperBody {
-    /// How half a sleeper lies, its neighbours so far away on the left and on the right, m: its bearing area under the seat as far as the
-    /// sleeper reaches.
+    /// Bearing area of half a sleeper under its seat, limited by the length of the sleeper; the arguments are the
+    /// distances of the neighbours on the left and on the right, m.
     pub fn bearing(&self, spacings: [f64; 2]) -> foundation::Bearing {
         let half = 0.5 * self.length;
         let length = (0.5 * self.base_area / self.base_width).min(half);
@@ -380,12 +385,12 @@ impl SleeperBody {
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Foot {
-    /// A rigid sleeper, its half mass in kg, on a support that can only push.
+    /// A rigid sleeper, with half its mass in kg, on a support in compression only.
     Sleeper {
         mass: Given,
-        /// The support as it is stated; `None` where the layers, or only grains, say what it is.
+        /// The stated support; `None` if the layers or grains determine it.
         support: Option<Support>,
-        /// In series with the support.
+        /// Under sleeper pad in series with the support.
         usp: Option<Usp>,
     },
     /// A seat that does not move.
@@ -405,7 +410,7 @@ impl Track {
         self.sections.last().map_or(0.0, |s| s.end)
     }
 
-    /// Whether rails lie all along it.
+    /// Whether all sections have rails.
     pub fn has_rails(&self) -> bool {
         self.sections.iter().all(|section| section.rail.is_some())
     }
@@ -415,7 +420,7 @@ impl Track {
         self.sections.iter().find(|s| x <= s.end).or(self.sections.last())?.rail.as_ref()
     }
 
-    /// What lies under a section, from left to right: chainage of both ends, m, layers, and a plate in them.
+    /// The ground under a section, from left to right: chainage of both ends, m, layers, and an approach slab in them.
     pub fn ground(&self, section: usize) -> Vec<Groundwork> {
         let whole = &self.sections[section];
         let own = |start: f64, end: f64| Groundwork { start, end, layers: whole.layers.clone(), approach_slab: None };
@@ -431,18 +436,18 @@ impl Track {
         parts
     }
 
-    /// Area on which half a sleeper lies, m^2; `None` for a seat without a sleeper or with one of unknown size.
+    /// Bearing area of half a sleeper, m^2; `None` for a seat without a sleeper of known size.
     pub fn bearing_area(&self, seat: &Seat) -> Option<f64> {
         seat.sleeper.filter(|_| seat.is_ballasted()).map(|sleeper| sleeper.base_area / 2.0)
     }
 
-    /// Indices of the seats of a section, which lie side by side.
+    /// Indices of the seats of a section, which are consecutive.
     pub fn seats_of(&self, section: usize) -> Range<usize> {
         let first = |section: usize| self.seats.partition_point(|seat| seat.section < section);
         first(section)..first(section + 1)
     }
 
-    /// Distance between two neighbouring seats, m, the shortest of all.
+    /// Shortest distance between two neighbouring seats, m.
     pub fn shortest_bay(&self) -> f64 {
         let bays = self.seats.windows(2).map(|pair| tidy(pair[1].x - pair[0].x)).reduce(f64::min);
         bays.unwrap_or_else(|| self.sections.iter().map(|s| *s.spacing).fold(f64::INFINITY, f64::min))
@@ -462,7 +467,7 @@ impl Track {
         }
     }
 
-    /// What a table calls a seat: its number, led by the transition's name where there are several.
+    /// Name of a seat in tables: its number, after the name of its transition if there are several transitions.
     pub fn seat_name(&self, seat: &Seat) -> String {
         match self.transitions.get(seat.transition) {
             Some(t) if self.transitions.len() > 1 => format!("{}:{:+}", t.name, seat.number),
@@ -472,17 +477,17 @@ impl Track {
 }
 
 impl Seat {
-    /// Whether a settling support carries it.
+    /// Whether a support that can settle carries the seat.
     pub fn is_ballasted(&self) -> bool {
         matches!(self.foot, Foot::Sleeper { .. })
     }
 
-    /// Under its sleeper, as it is stated; `None` without a sleeper, or where layers or grains say what it is.
+    /// The stated support under its sleeper; `None` without a sleeper, or if layers or grains determine it.
     pub fn support(&self) -> Option<&Support> {
         if let Foot::Sleeper { support, .. } = &self.foot { support.as_ref() } else { None }
     }
 
-    /// Under its sleeper.
+    /// The under sleeper pad of its sleeper.
     pub fn usp(&self) -> Option<&Usp> {
         if let Foot::Sleeper { usp, .. } = &self.foot { usp.as_ref() } else { None }
     }
@@ -524,7 +529,7 @@ mod tests {
         };
         let (near, far) = (error(1.0), error(10.0));
         assert!(far.0 < 1e-3 && far.1 < 1e-3, "{far:?}");
-        // what is left out is of second order in the frequency
+        // the neglected terms are of second order in the frequency
         assert!((far.0 / near.0 - 100.0).abs() < 1.0 && (far.1 / near.1 - 100.0).abs() < 1.0);
         assert_eq!(self::spring(None, None), Spring { stiffness: 40e6, damping: 4e4, seating: None });
     }

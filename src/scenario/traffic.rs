@@ -1,10 +1,10 @@
-//! What acts on the track: vehicles, trains and test loads.
+//! Loads on the track: vehicles, trains and test loads.
 
 use super::{Given, Order, Profile, Sequence, Share};
 use crate::diag::Span;
 use serde::{Deserialize, Serialize};
 
-/// A vehicle on two bogies of two axles each, as carried by **one rail**: half of every mass, inertia and stiffness.
+/// A vehicle with two bogies of two axles each, for **one rail**: half of every mass, inertia and stiffness.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Vehicle {
     pub name: String,
@@ -12,27 +12,27 @@ pub struct Vehicle {
     pub car_body_mass: Given,
     /// kg m^2.
     pub car_body_pitch_inertia: Given,
-    /// kg, of each bogie.
+    /// Mass of each bogie, kg.
     pub bogie_mass: Given,
-    /// kg m^2, of each bogie.
+    /// Pitch inertia of each bogie, kg m^2.
     pub bogie_pitch_inertia: Given,
-    /// Distance of the bogie centres, m.
+    /// Distance between the bogie centres, m.
     pub bogie_spacing: Given,
-    /// kg, of each wheel with its half axle.
+    /// Mass of each wheel with half the axle, kg.
     pub wheel_mass: Given,
-    /// Distance of the axles of a bogie, m.
+    /// Distance between the axles of a bogie, m.
     pub wheelset_spacing: Given,
     /// m, for the drawing.
     pub wheel_radius: f64,
-    /// N/m and N s/m, of each wheel.
+    /// Stiffness (N/m) and damping (N s/m) for each wheel.
     pub primary_stiffness: Given,
     pub primary_damping: Given,
-    /// N/m and N s/m, of each bogie.
+    /// Stiffness (N/m) and damping (N s/m) for each bogie.
     pub secondary_stiffness: Given,
     pub secondary_damping: Given,
     /// Hertz constant of wheel on rail, N/m^1.5.
     pub hertz: Given,
-    /// Over the couplers, m; given where a train needs it.
+    /// Length over couplers, m; given if a train needs it.
     pub length: Option<Given>,
 }
 
@@ -40,7 +40,7 @@ impl Vehicle {
     /// Number of axles.
     pub const AXLES: u64 = 4;
 
-    /// Mass over one rail, kg.
+    /// Mass for one rail, kg.
     pub fn mass(&self) -> f64 {
         *self.car_body_mass + 2.0 * *self.bogie_mass + 4.0 * *self.wheel_mass
     }
@@ -52,15 +52,15 @@ impl Vehicle {
     }
 }
 
-/// Vehicles that run together at one speed.
+/// Coupled vehicles with one speed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Train {
     pub name: String,
-    /// In the order of the train, the leading one first.
+    /// Vehicles in the order of the train, the leading vehicle first.
     pub vehicles: Vec<Vehicle>,
-    /// m/s; the largest where it varies.
+    /// Speed, m/s; the largest value if it varies.
     pub speed: Given,
-    /// m/s by the chainage of the leading wheel, over the whole track; `None` is `speed` everywhere.
+    /// Speed by the chainage of the leading wheel, m/s, over the whole track; `None` if it is `speed` everywhere.
     pub speed_profile: Option<Profile>,
     pub direction: Direction,
 }
@@ -75,16 +75,16 @@ impl Train {
         self.vehicles.iter().map(|vehicle| 2.0 * vehicle.mass()).sum()
     }
 
-    /// Mass that a wheel carries on average, kg.
+    /// Mean mass per wheel, kg.
     pub fn mean_wheel_mass(&self) -> f64 {
         self.vehicles.iter().map(Vehicle::mass).sum::<f64>() / self.axles() as f64
     }
 
-    /// Distance of each vehicle's leading wheel behind the train's leading wheel, m. Vehicles of a train are centred
+    /// Distance from the leading wheel of the train to the leading wheel of each vehicle, m. Vehicles are centred
     /// between their couplers.
     pub fn vehicle_offsets(&self) -> Vec<f64> {
         let mut offsets = Vec::with_capacity(self.vehicles.len());
-        let mut front = 0.0; // of the vehicle's coupler, behind that of the train
+        let mut front = 0.0; // distance from the front coupler of the train to that of the vehicle
         for vehicle in &self.vehicles {
             let wheels = vehicle.wheel_offsets()[3];
             let length = vehicle.length.map_or(wheels, |l| *l);
@@ -109,18 +109,18 @@ pub enum Direction {
     /// The train runs towards larger x.
     Forward,
     Backward,
-    /// Every second train the other way.
+    /// The direction alternates from train to train.
     Both,
 }
 
 /// The trains of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Traffic {
-    /// The train that the scene names first. What is shown of one train only is of it.
+    /// The train that the scene names first. Results for a single train are for this train.
     pub train: Train,
-    /// Trains of other kinds that share the track with it.
+    /// Trains of other kinds.
     pub others: Vec<Train>,
-    /// How many trains of each kind run, in the order of the scene; of one kind alone it follows from `total`.
+    /// Number of trains of each kind, in the order of the scene; for a single kind it follows from `total`.
     pub counts: Vec<u64>,
     pub order: Order,
     /// Axles of the whole run.
@@ -133,7 +133,7 @@ impl Traffic {
         std::iter::once(&self.train).chain(&self.others)
     }
 
-    /// Speed of the fastest train, m/s: limits of the level of a line go by it.
+    /// Speed of the fastest train, m/s, which determines the limits of the track level.
     pub fn line_speed(&self) -> f64 {
         self.trains().map(|train| *train.speed).fold(0.0, f64::max)
     }
@@ -143,7 +143,7 @@ impl Traffic {
         !self.others.is_empty()
     }
 
-    /// Which train runs when.
+    /// The order of the trains.
     pub fn sequence(&self) -> Sequence {
         let alone = [*self.total / self.train.axles()];
         let counts = if self.is_mixed() { self.counts.as_slice() } else { alone.as_slice() };
@@ -157,49 +157,49 @@ impl Traffic {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StaticLoad {
     pub name: String,
-    /// Where it stands.
+    /// Place of the load in the text.
     pub span: Span,
     pub on: Target,
     /// Chainage, m.
     pub x: f64,
-    /// N over one rail, positive down.
+    /// Force for one rail, N, positive downwards.
     pub force: Given,
 }
 
-/// A force on a sleeper or the rail that changes or moves: a test rig, or a load that only grains can follow.
+/// A force on a sleeper or the rail that changes or moves: a load of a test rig, or a load that needs grains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RigLoad {
     pub name: String,
-    /// Where it stands.
+    /// Place of the load in the text.
     pub span: Span,
     pub on: Target,
     /// Chainage at the start, m.
     pub x: f64,
     pub force: Force,
-    /// On the sides of a specimen under a plate, Pa.
+    /// Pressure on the sides of a specimen under a plate, Pa.
     pub confinement: Option<Given>,
-    /// Along the rail, m/s; 0 stays.
+    /// Speed along the rail, m/s; 0 for a load at a fixed place.
     pub speed: Given,
-    /// Times that a cyclic force comes back.
+    /// Number of cycles of a cyclic force.
     pub cycles: u64,
-    /// What of it is more than a constant force at one place, where the scene says that.
+    /// Place of the text that makes it more than a constant force at one place; `None` otherwise.
     pub changes: Option<Span>,
 }
 
-/// N over one rail, positive down.
+/// Force for one rail, N, positive downwards.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Force {
     Constant(Given),
-    /// From the smaller to the greater force and back.
+    /// Changes from the smaller to the greater force and back.
     Cyclic {
         range: [Given; 2],
         /// Hz.
         frequency: Given,
         wave: Wave,
     },
-    /// Time, s, and force, straight in between; held beyond the ends.
+    /// Times, s, and forces, linear in between; constant beyond the ends.
     History(Vec<[f64; 2]>),
-    /// Shortening of the bed under a plate that is driven down, over its height; no force.
+    /// Shortening / height of the bed under a driven plate, instead of a force.
     Strain(Given),
 }
 
@@ -209,7 +209,7 @@ pub enum Wave {
 }
 
 impl Force {
-    /// N; 0 where the way is given and not the force.
+    /// Force, N; 0 if a strain is given instead of a force.
     pub fn largest(&self) -> f64 {
         match self {
             Force::Constant(force) => **force,
@@ -221,7 +221,7 @@ impl Force {
 }
 
 impl RigLoad {
-    /// A load that stays as it is, where this is one.
+    /// The constant load, if the load is constant and does not move.
     pub fn at_rest(&self) -> Option<StaticLoad> {
         match self.force {
             Force::Constant(force) if *self.speed == 0.0 && self.confinement.is_none() => {
@@ -236,6 +236,6 @@ impl RigLoad {
 pub enum Target {
     Rail,
     Sleepers,
-    /// A plate over the whole bed, in the place of sleepers.
+    /// A plate over the whole bed, instead of sleepers.
     Bed,
 }

@@ -1,5 +1,5 @@
-//! What engineers call things in formulas, in other programs, in other languages and in speech, and what they are called here. A name
-//! may stand for several of ours: the first that is known where it stands is meant.
+//! Names that engineers use in formulas, in other programs, in other languages and in speech, each with its name here.
+//! A foreign name may have several entries: the first entry whose name is known in that context is taken.
 
 type Called = &'static [(&'static str, &'static str)];
 
@@ -386,7 +386,7 @@ const RESPONSES: Called = &[
     ("stiffness", "rail_stiffness"),
 ];
 
-/// What makes one number of a response.
+/// Reductions: functions that make one number from a response.
 const REDUCTIONS: Called = &[
     ("avg", "mean"),
     ("average", "mean"),
@@ -402,7 +402,7 @@ const REDUCTIONS: Called = &[
     ("rmse", "misfit"),
 ];
 
-/// Which names are asked for.
+/// The table in which a name is looked up.
 #[derive(Clone, Copy)]
 pub enum Names {
     Kinds,
@@ -412,7 +412,7 @@ pub enum Names {
     Reductions,
 }
 
-/// What a name is called here, if that is one of the known ones: as written, or else in another case.
+/// The known name that a foreign name stands for; if no entry matches as written, upper and lower case are ignored.
 pub fn called<'k>(names: Names, theirs: &str, known: impl Iterator<Item = &'k str>) -> Option<&'k str> {
     let table = match names {
         Names::Kinds => KINDS,

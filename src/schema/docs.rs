@@ -3,7 +3,7 @@
 use super::{Field, Form, KINDS, Kind, Need, PLANNED_KINDS, Role, Varies, kinds::COMMON};
 use crate::units::number;
 
-/// One line a kind.
+/// One line for each kind.
 pub fn index() -> String {
     let mut out = String::from("Kinds of declarations\n\n");
     for kind in KINDS.iter().filter(|k| k.role != Role::Nested) {
@@ -39,7 +39,7 @@ pub fn section(kind: &Kind) -> String {
     out
 }
 
-/// A field as a row of a table: its name, form, need and meaning, with those of its words.
+/// A field as a row of a table: its name, form, need and meaning, and the meanings of its words.
 fn row(field: &Field, name: &str) -> String {
     let words = known_words(field).filter(|w| !w.doc.is_empty()).map(|w| format!("`{}`: {}", w.name, w.doc));
     let docs = [field.doc, remark(field)].map(str::to_string);
@@ -53,16 +53,16 @@ fn row(field: &Field, name: &str) -> String {
     format!("| {} |\n", cells.map(|cell| cell.replace('|', "\\|")).join(" | "))
 }
 
-/// What is said of a field that no run reads yet.
+/// The remark on a field that no run reads yet.
 fn remark(field: &Field) -> &'static str {
-    if field.unread { "no run of this version reads it yet" } else { "" }
+    if field.unread { "not used by this version" } else { "" }
 }
 
 fn known_words(field: &Field) -> impl Iterator<Item = &'static super::Word> {
     field.form.words().into_iter().filter(|w| !w.planned)
 }
 
-/// What a kind says besides its fields: what it changes, which fields exclude each other, what is not read yet.
+/// Remarks on a kind: which kind it changes, which fields exclude each other, which fields are not read yet.
 fn remarks(kind: &Kind) -> Vec<String> {
     let changed = kind.changes().map(|changed| {
         let names: Vec<&str> = changed.fields.iter().map(|f| f.name).collect();
@@ -72,9 +72,9 @@ fn remarks(kind: &Kind) -> Vec<String> {
         let ways: Vec<String> = alternative.ways.iter().map(|way| format!("`{}`", way.join("` and `"))).collect();
         let ways = crate::diag::or_list(&ways);
         match alternative.default {
-            Some((field, value)) => format!("Give {ways}; where none is given, `{field} = {value}`."),
-            None if alternative.exclusive => format!("Give {ways}, and no other."),
-            None => format!("Give {ways}; given together they must agree within 2 %."),
+            Some((field, value)) => format!("Give {ways}. If none is given, `{field} = {value}` is used."),
+            None if alternative.exclusive => format!("Give exactly one: {ways}."),
+            None => format!("Give {ways}. If both are given, they must agree within 2 %."),
         }
     });
     let planned = (!kind.planned.is_empty()).then(|| format!("Not in this version: {}.", kind.planned.join(", ")));
@@ -120,7 +120,7 @@ fn describe(out: &mut String, field: &Field, indent: usize) {
     }
 }
 
-/// What may stand in a field, in a line: `MN/m, 5 .. 3000`.
+/// The allowed values of a field in one line: `MN/m, 5 .. 3000`.
 pub fn form_text(form: &Form) -> String {
     match form {
         Form::Number(m) | Form::Interval(m) => {

@@ -1,8 +1,8 @@
-//! Fields, words and forms of the table of kinds, as short as they are written there.
+//! Short constructors for the fields, words and forms of the table of kinds.
 
 use super::{Alternative, Basis, Field, Form, Measure, Need, Varies, Word};
 
-/// Forces of a seat, or of a sleeper, which has two.
+/// Basis of a force: one seat, or one sleeper with two seats.
 pub(super) const SEAT: Basis = Basis { names: &[("seat", 1.0), ("sleeper", 0.5)], assumed: Some("seat") };
 pub(super) const NONE: &[Word] = &[word("none", "absent")];
 pub(super) const AXLE_COUNT: Form = number("axles", 0.0, 1e9);
@@ -53,7 +53,7 @@ pub(super) const fn word(name: &'static str, doc: &'static str) -> Word {
 pub(super) const fn either(ways: &'static [&'static [&'static str]]) -> Alternative {
     Alternative { ways, default: None, exclusive: false }
 }
-/// Ways that say different things: one of them, and no other.
+/// Ways with different meanings: exactly one way must be given.
 pub(super) const fn one_of(ways: &'static [&'static [&'static str]]) -> Alternative {
     Alternative { exclusive: true, ..either(ways) }
 }

@@ -1,4 +1,4 @@
-//! The words of `law.form`: the settlement laws with their arguments. Letters are those of the publications.
+//! The words of `law.form`: the settlement laws with their arguments. The letters are taken from the publications.
 
 use super::fields::{SEAT, default, number, per, required, word};
 use super::{Field, Form, Word};
@@ -14,56 +14,76 @@ const EXPONENT: Form = number("", 0.0, 10.0);
 pub(super) const FORMS: &[Word] = &[
     law(
         "varandas",
-        "Varandas, Hölscher and Silva (2014): the integral over force of what each exceedance of that force adds",
+        "Varandas, Hölscher and Silva (2014): integral over the force of the settlement that each exceedance of this force adds",
         &[
             default("alpha", number("", 0.0, 5.0), "0.6", "exponent of the force"),
-            default("beta", number("", 0.0, 5.0), "0.82", "how fast repeated load loses its effect"),
+            default("beta", number("", 0.0, 5.0), "0.82", "decay of the effect of repeated loads"),
             default(
                 "gamma",
                 number("mm", 0.01, 1000.0),
                 "10 mm",
                 "settlement after `reference_cycles` of `reference_force`",
             ),
-            default("reference_cycles", CYCLES, "1_000_000 axles", "N0"),
-            default("reference_force", FORCE, "50 kN per seat", "F0"),
+            default("reference_cycles", CYCLES, "1_000_000 axles", "N0: reference number of cycles"),
+            default("reference_force", FORCE, "50 kN per seat", "F0: reference force"),
         ],
     ),
     law(
         "nasrollahi",
-        "Nasrollahi et al. (2023): dS/dN = (alpha / N0) (<F - Fth> / F0)^beta, Fth rising with settlement from the initial to the final threshold",
+        "Nasrollahi et al. (2023): dS/dN = (alpha / N0) (<F - Fth> / F0)^beta; the threshold Fth rises with settlement from the initial to the final threshold",
         &[
-            default("alpha", number("mm", 1e-6, 100.0), "0.02 mm", "settlement of N0 cycles at F0 above the threshold"),
+            default(
+                "alpha",
+                number("mm", 1e-6, 100.0),
+                "0.02 mm",
+                "settlement after N0 cycles at F0 above the threshold",
+            ),
             default("beta", number("", 1.0, 10.0), "2.8", "exponent of the force above the threshold"),
-            default("gamma", number("mm^-1", 0.0, 100.0), "0.11 mm^-1", "how fast the threshold rises with settlement"),
-            default("initial_threshold", per("kN", 0.0, 1000.0, &SEAT), "35 kN per seat", "of a fresh support"),
+            default(
+                "gamma",
+                number("mm^-1", 0.0, 100.0),
+                "0.11 mm^-1",
+                "rate at which the threshold rises with settlement",
+            ),
+            default(
+                "initial_threshold",
+                per("kN", 0.0, 1000.0, &SEAT),
+                "35 kN per seat",
+                "threshold force of a new support",
+            ),
             default(
                 "final_threshold",
                 per("kN", 0.0, 1000.0, &SEAT),
                 "90 kN per seat",
-                "of one that has settled for long",
+                "threshold force after long settlement",
             ),
-            default("reference_force", FORCE, "1 kN per seat", "F0"),
-            default("reference_cycles", CYCLES, "100_000 axles", "N0"),
+            default("reference_force", FORCE, "1 kN per seat", "F0: reference force"),
+            default("reference_cycles", CYCLES, "100_000 axles", "N0: reference number of cycles"),
         ],
     ),
     law(
         "sato",
         "Sato (1995): S = (F/F0)^exponent (gamma (1 - e^(-alpha N)) + beta N)",
         &[
-            default("alpha", number("", 1e-9, 10.0), "1e-4", "how fast the first part comes, 1 per cycle"),
-            default("beta", number("mm", 0.0, 1.0), "1e-5 mm", "what every cycle adds for ever"),
-            default("gamma", number("mm", 1e-3, 1000.0), "5 mm", "the whole first part"),
-            default("exponent", EXPONENT, "0", "of the force; the published form knows no force"),
-            default("reference_force", FORCE, "50 kN per seat", "F0; without effect while `exponent` is 0"),
+            default("alpha", number("", 1e-9, 10.0), "1e-4", "rate of the initial settlement [1 per cycle]"),
+            default("beta", number("mm", 0.0, 1.0), "1e-5 mm", "settlement per cycle of the long-term part"),
+            default("gamma", number("mm", 1e-3, 1000.0), "5 mm", "total initial settlement"),
+            default("exponent", EXPONENT, "0", "exponent of the force; the published law does not depend on the force"),
+            default(
+                "reference_force",
+                FORCE,
+                "50 kN per seat",
+                "F0: reference force; without effect if `exponent` is 0",
+            ),
         ],
     ),
     law(
         "shenton",
         "Shenton (1985): S = (F/F0)^exponent (k1 N^0.2 + k2 N)",
         &[
-            required("k1", number("mm", 1e-6, 100.0), "settlement of the first cycle of `reference_force`"),
-            required("k2", number("mm", 0.0, 1.0), "what every cycle of it adds for ever"),
-            default("exponent", EXPONENT, "1", "of the force"),
+            required("k1", number("mm", 1e-6, 100.0), "settlement in the first cycle of `reference_force`"),
+            required("k2", number("mm", 0.0, 1.0), "settlement per cycle of `reference_force` in the long-term part"),
+            default("exponent", EXPONENT, "1", "exponent of the force"),
             required("reference_force", FORCE, "F0: the seat force for which `k1` and `k2` hold"),
         ],
     ),
@@ -71,34 +91,34 @@ pub(super) const FORMS: &[Word] = &[
         "hettler",
         "Hettler (1984): S = s (F/F0)^exponent (1 + c log N)",
         &[
-            default("s", number("mm", 1e-9, 100.0), "0.00095 mm", "settlement of the first cycle of `reference_force`"),
-            default("c", number("", 1e-3, 10.0), "0.43", "what an e-fold or a decade of cycles adds"),
-            default("exponent", EXPONENT, "1.6", "of the force"),
-            default("reference_force", FORCE, "1 kN per seat", "F0"),
+            default("s", number("mm", 1e-9, 100.0), "0.00095 mm", "settlement in the first cycle of `reference_force`"),
+            default("c", number("", 1e-3, 10.0), "0.43", "growth per e-fold or per decade of cycles, relative to `s`"),
+            default("exponent", EXPONENT, "1.6", "exponent of the force"),
+            default("reference_force", FORCE, "1 kN per seat", "F0: reference force"),
             required(
                 "logarithm",
                 Form::Words(&[word("natural", "base e"), word("decimal", "base 10")]),
-                "its base: sources differ, by a factor of 2.3",
+                "base of the logarithm; sources differ, which changes the term by a factor of 2.3",
             ),
         ],
     ),
     law(
         "guerin",
-        "Guérin (1996): dS/dN = alpha (d/d0)^beta with the elastic deflection d of the support",
+        "Guérin (1996): dS/dN = alpha (d/d0)^beta; d is the elastic deflection of the support",
         &[
-            default("alpha", number("mm", 1e-12, 1.0), "1.44e-6 mm", "settlement a cycle at `reference_deflection`"),
+            default("alpha", number("mm", 1e-12, 1.0), "1.44e-6 mm", "settlement per cycle at `reference_deflection`"),
             default("beta", EXPONENT, "2.51", "exponent of the deflection"),
-            default("reference_deflection", number("mm", 1e-3, 100.0), "1 mm", "d0"),
+            default("reference_deflection", number("mm", 1e-3, 100.0), "1 mm", "d0: reference deflection"),
         ],
     ),
     law(
         "power",
-        "a law of one's own: S = a (F/F0)^m N^b",
+        "user-defined law: S = a (F/F0)^m N^b",
         &[
-            required("a", number("mm", 1e-9, 1000.0), "settlement of the first cycle of `reference_force`"),
+            required("a", number("mm", 1e-9, 1000.0), "settlement in the first cycle of `reference_force`"),
             required("m", EXPONENT, "exponent of the force"),
-            required("b", number("", 1e-3, 1.0), "exponent of the count"),
-            required("reference_force", FORCE, "F0"),
+            required("b", number("", 1e-3, 1.0), "exponent of the number of cycles"),
+            required("reference_force", FORCE, "F0: reference force"),
         ],
     ),
 ];

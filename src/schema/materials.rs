@@ -1,14 +1,14 @@
-//! Kinds of what lies under the sleepers: gradings, granular materials, soils.
+//! Kinds of materials under the sleepers: gradings, granular materials, soils.
 
 use super::fields::{NONE, along, default, either, measure, number, optional, per, required, way, word};
 use super::{Basis, Form, Kind, Role, Word};
 
-/// A contact is two particles in series.
+/// A contact between two particles has the stiffness of two springs in series.
 const CONTACT_OR_PARTICLE: Basis = Basis { names: &[("contact", 1.0), ("particle", 0.5)], assumed: None };
 
 pub(super) const GRADING: Kind = Kind {
     name: "grading",
-    doc: "How the sizes of grains share the mass: the curve of a sieve test, and the part of it that is modelled.",
+    doc: "A grading: the sieve curve of the grains, and the range of sizes that is modelled.",
     role: Role::Part,
     fields: &[
         required(
@@ -18,9 +18,9 @@ pub(super) const GRADING: Kind = Kind {
                 Form::Words(&[
                     Word {
                         name: "log_normal",
-                        doc: "the logarithm of the size is normally distributed by mass; it needs both cuts",
+                        doc: "the logarithm of the size is normally distributed by mass; needs `cut_below` and `cut_above`",
                         arguments: &[
-                            required("median", number("mm", 1e-3, 1000.0), "half of the mass is finer"),
+                            required("median", number("mm", 1e-3, 1000.0), "size at which half of the mass is finer"),
                             required(
                                 "spread",
                                 number("", 0.01, 3.0),
@@ -31,13 +31,13 @@ pub(super) const GRADING: Kind = Kind {
                     },
                     Word {
                         name: "file",
-                        doc: "a table below the main file's folder with the columns `size_mm` and `passing_%`",
-                        arguments: &[required("name", Form::Text, "such as \"sieves.csv\"")],
+                        doc: "a table in the folder of the main file or below it, with the columns `size_mm` and `passing_%`",
+                        arguments: &[required("name", Form::Text, "name of the file, such as \"sieves.csv\"")],
                         planned: false,
                     },
                 ]),
             ]),
-            "share of the mass that passes a sieve, by its size; straight over the logarithm of the size between sieves",
+            "share of the mass that passes each sieve size; between two sieves the share is linear in the logarithm of the size",
         ),
         default("cut_below", CUT, "none", "smaller grains are not modelled"),
         default("cut_above", CUT, "none", "larger grains are not modelled"),
@@ -51,118 +51,126 @@ const CUT: Form = Form::OneOf(&[number("mm", 1e-3, 1000.0), Form::Words(NONE)]);
 
 pub(super) const GRANULAR: Kind = Kind {
     name: "granular",
-    doc: "Ballast or sub-ballast: grains with their sizes, shapes, contacts and the recipe by which they are packed.",
+    doc: "Ballast or sub-ballast: grains with their sizes, shapes, contacts and packing recipe.",
     role: Role::Part,
     fields: &[
-        required("grading", Form::Object("grading"), "of the grains"),
+        required("grading", Form::Object("grading"), "grading of the grains"),
         default(
             "scale",
             number("", 1.0, 4.0),
             "1",
-            "size of modelled over real grains: fewer and larger ones, whose contacts are as much stiffer that the layer stays as stiff",
+            "size of modelled grains / size of real grains; larger grains are fewer, and their contacts are stiffer by the same factor, so that the stiffness of the layer stays the same",
         ),
-        required("density", number("kg/m^3", 1500.0, 3500.0), "of a grain, without pores between grains"),
+        required(
+            "density",
+            number("kg/m^3", 1500.0, 3500.0),
+            "density of the solid grain, without pores between grains",
+        ),
         default(
             "shape",
-            Form::Words(&[word("spheres", "one sphere a grain"), CLUMPS]),
+            Form::Words(&[word("spheres", "each grain is one sphere"), CLUMPS]),
             "spheres",
-            "of the grains; a grain of any shape has the volume of the sphere of its size",
+            "shape of the grains; every grain has the volume of a sphere with the diameter of its size",
         ),
         default(
             "contact",
             Form::Words(&[
-                word("linear", "a spring of `contact_stiffness`"),
+                word("linear", "a linear spring of `contact_stiffness`"),
                 Word {
                     name: "hertz",
-                    doc: "elastic bodies that touch: the stiffness grows with the force",
+                    doc: "Hertz contact of elastic bodies: the stiffness grows with the force",
                     arguments: &[
-                        required("youngs_modulus", number("GPa", 0.1, 200.0), "of the rock"),
-                        required("poisson_ratio", number("", 0.0, 0.49), "of the rock"),
+                        required("youngs_modulus", number("GPa", 0.1, 200.0), "Young's modulus of the rock"),
+                        required("poisson_ratio", number("", 0.0, 0.49), "Poisson's ratio of the rock"),
                     ],
                     planned: false,
                 },
             ]),
             "linear",
-            "law of two grains that touch",
+            "contact law between two grains",
         ),
         optional(
             "contact_stiffness",
             per("MN/m", 0.1, 1000.0, &CONTACT_OR_PARTICLE),
-            "normal; needed for `contact = linear`",
+            "normal stiffness; needed for `contact = linear`",
         ),
         default("shear_ratio", number("", 0.0, 1.5), "1", "tangential stiffness / normal stiffness"),
-        required("friction", number("", 0.0, 1.5), "between grains, under traffic"),
-        optional("wall_friction", number("", 0.0, 1.5), "to walls and sleepers; that between grains where absent"),
+        required("friction", number("", 0.0, 1.5), "friction coefficient between grains, under traffic"),
+        optional(
+            "wall_friction",
+            number("", 0.0, 1.5),
+            "friction coefficient on walls and sleepers; by default equal to `friction`",
+        ),
         optional(
             "youngs_modulus",
             along(number("MPa", 1.0, 50_000.0)),
-            "of the layer as a continuum, from which supports are computed; grains do not read it",
+            "Young's modulus of the layer as a continuum, for the support of sleepers; not used by grains",
         ),
-        default("poisson_ratio", number("", 0.0, 0.49), "0.3", "of the layer as a continuum"),
-        default("spread", SPREAD, "35 deg", "angle against the vertical at which the layer spreads a load"),
+        default("poisson_ratio", number("", 0.0, 0.49), "0.3", "Poisson's ratio of the layer as a continuum"),
+        default("spread", SPREAD, "35 deg", "angle from the vertical at which the layer spreads a load"),
         default(
             "local_damping",
             number("", 0.0, 0.9),
             "0.2",
-            "share of the force out of balance that opposes motion, under traffic",
+            "local damping: share of the unbalanced force that opposes the motion, under traffic",
         ),
         default(
             "viscous_damping",
             number("", 0.0, 1.0),
             "0.3",
-            "normal dashpot of a contact as share of its critical damping, under traffic",
+            "normal damping of a contact / critical damping, under traffic",
         ),
         default(
             "shear_damping",
             number("", 0.0, 1.0),
             "0",
-            "shear dashpot of a contact as share of its critical damping, under traffic; 0.3 cuts the step to 0.4 of its length",
+            "shear damping of a contact / critical damping, under traffic; 0.3 reduces the time step to 0.4 of its length",
         ),
         default(
             "dashpots",
             Form::Words(&[
-                word("no_tension", "spring and dashpot together never pull"),
-                word("full", "a dashpot may pull grains that part"),
+                word("no_tension", "the sum of spring and dashpot force is never tensile"),
+                word("full", "a dashpot may pull on grains that separate"),
             ]),
             "no_tension",
-            "of contacts",
+            "dashpots of contacts",
         ),
-        default("packing", Form::Object("packing"), "{}", "recipe by which the periodic cell is packed"),
+        default("packing", Form::Object("packing"), "{}", "recipe for packing the periodic cell"),
         default(
             "bond",
             Form::OneOf(&[Form::Object("bond"), Form::Words(NONE)]),
             "none",
-            "glue between grains that touch once sleepers stand on them",
+            "glue between the grains that are in contact when the sleepers have been placed",
         ),
     ],
     alternatives: &[],
     planned: &[],
 };
 
-/// Surfaces of grains: files, and those of the library, which `examples/grain_shapes.rs` makes.
+/// Surfaces of grains: files, and the surfaces of the library, which `examples/grain_shapes.rs` makes.
 const SURFACES: &[Word] = &[
     Word {
         name: "file",
-        doc: "a closed surface (STL, in any unit) below the main file's folder, such as a scanned stone",
-        arguments: &[required("name", Form::Text, "such as \"stone.stl\"")],
+        doc: "a closed surface (STL, in any unit) in the folder of the main file or below it, such as a scanned stone",
+        arguments: &[required("name", Form::Text, "name of the file, such as \"stone.stl\"")],
         planned: false,
     },
-    word("blocky", "of the library, generated: flatness 0.85, elongation 0.85, roundness 0.1"),
-    word("flat", "of the library, generated: flatness 0.5, elongation 0.85, roundness 0.1"),
-    word("elongated", "of the library, generated: flatness 0.85, elongation 0.5, roundness 0.1"),
-    word("bladed", "of the library, generated: flatness 0.55, elongation 0.55, roundness 0.1"),
-    word("worn", "of the library, generated: flatness 0.75, elongation 0.75, roundness 0.5"),
+    word("blocky", "surface of the library, generated: flatness 0.85, elongation 0.85, roundness 0.1"),
+    word("flat", "surface of the library, generated: flatness 0.5, elongation 0.85, roundness 0.1"),
+    word("elongated", "surface of the library, generated: flatness 0.85, elongation 0.5, roundness 0.1"),
+    word("bladed", "surface of the library, generated: flatness 0.55, elongation 0.55, roundness 0.1"),
+    word("worn", "surface of the library, generated: flatness 0.75, elongation 0.75, roundness 0.5"),
 ];
 
 const CLUMPS: Word = Word {
     name: "clumps",
-    doc: "overlapping spheres that move as one",
+    doc: "overlapping spheres that move as one rigid body",
     arguments: &[
         default(
             "pebbles",
             Form::OneOf(&[Form::Integer { min: 1, max: 50 }, Form::Interval(measure("", 1.0, 50.0))]),
             "2 .. 3",
-            "spheres a clump",
+            "number of spheres in a clump",
         ),
         default(
             "ratio",
@@ -170,35 +178,35 @@ const CLUMPS: Word = Word {
             "0.8",
             "smallest sphere / largest sphere of a clump, as in bubble-pack",
         ),
-        default("distance", number("deg", 0.0, 180.0), "110 deg", "how smooth the surface is, as in bubble-pack"),
+        default("distance", number("deg", 0.0, 180.0), "110 deg", "smoothness of the surface, as in bubble-pack"),
         default(
             "templates",
             Form::Integer { min: 1, max: 1000 },
             "5",
-            "shapes that grains are copies of: angular ones, made by chance from the scene's seed",
+            "number of different shapes; each grain is a copy of one shape; the shapes are angular and drawn at random from `solve.seed`",
         ),
         default(
             "flatness",
             number("", 0.3, 1.0),
             "0.7",
-            "shortest / intermediate side of the smallest box round an angular shape; of crushed ballast mostly 0.6 .. 0.8 (common knowledge, unchecked)",
+            "shortest / intermediate side of the smallest box around an angular shape; crushed ballast has mostly 0.6 .. 0.8 (common knowledge, unchecked)",
         ),
         default(
             "elongation",
             number("", 0.3, 1.0),
             "0.7",
-            "intermediate / longest side of that box; of crushed ballast mostly 0.6 .. 0.8 (common knowledge, unchecked)",
+            "intermediate / longest side of the same box; crushed ballast has mostly 0.6 .. 0.8 (common knowledge, unchecked)",
         ),
         default(
             "roundness",
             number("", 0.0, 0.6),
             "0.15",
-            "radius of edges and corners / radius of the largest ball inside (Wadell 1932); fresh ballast 0.1 .. 0.2, worn ballast more (common knowledge, unchecked)",
+            "radius of edges and corners / radius of the largest inscribed sphere (Wadell 1932); fresh ballast has 0.1 .. 0.2, worn ballast more (common knowledge, unchecked)",
         ),
         optional(
             "from",
             Form::List(&Form::Words(SURFACES)),
-            "surfaces to fill with spheres in place of angular ones: one template each",
+            "surfaces that are filled with spheres instead of angular shapes: one clump shape for each surface",
         ),
     ],
     planned: false,
@@ -206,29 +214,39 @@ const CLUMPS: Word = Word {
 
 pub(super) const PACKING: Kind = Kind {
     name: "packing",
-    doc: "How a granular layer is made: lift by lift, each pressed down, with properties of its own meanwhile.",
+    doc: "Packing recipe of a granular layer: the layer is built in lifts, each pressed down, with its own friction and damping during packing.",
     role: Role::Nested,
     fields: &[
-        default("lifts", Form::Integer { min: 1, max: 20 }, "3", "layers that are pressed one after the other"),
-        default("pressure", number("kPa", 1.0, 2000.0), "200 kPa", "on each lift"),
-        default("friction", number("", 0.0, 1.5), "0", "between grains, while they are packed"),
-        default("local_damping", number("", 0.0, 0.9), "0.7", "while they are packed"),
-        default("viscous_damping", number("", 0.0, 1.0), "0", "normal dashpot, while they are packed"),
+        default(
+            "lifts",
+            Form::Integer { min: 1, max: 20 },
+            "3",
+            "number of lifts that are pressed one after the other",
+        ),
+        default("pressure", number("kPa", 1.0, 2000.0), "200 kPa", "pressure of the plate on each lift"),
+        default("friction", number("", 0.0, 1.5), "0", "friction coefficient between grains during packing"),
+        default("local_damping", number("", 0.0, 0.9), "0.7", "local damping during packing"),
+        default(
+            "viscous_damping",
+            number("", 0.0, 1.0),
+            "0",
+            "normal damping of a contact / critical damping, during packing",
+        ),
         default(
             "restored",
             Form::Words(&[
-                word("pressed", "under the whole pressure of the plate, which locks stresses in"),
-                word("eased", "under the plate once it is eased to half of the bed's own weight"),
-                word("unloaded", "after the plate has gone, on a bed at rest without friction"),
+                word("pressed", "under the full pressure of the plate; stresses stay locked in the bed"),
+                word("eased", "under the plate after its force is reduced to half the weight of the bed"),
+                word("unloaded", "after the plate is removed and the bed is at rest without friction"),
             ]),
             "eased",
-            "when friction and damping come back after packing; a bed goes by its top layer",
+            "when friction and damping return to the values for traffic; the value of the top layer holds for the whole bed",
         ),
         default(
             "reloads",
             Form::Integer { min: 0, max: 20 },
             "0",
-            "times that the plate presses the finished bed again; a bed goes by its top layer",
+            "number of times that the plate presses the finished bed again; the value of the top layer holds for the whole bed",
         ),
     ],
     alternatives: &[],
@@ -237,16 +255,16 @@ pub(super) const PACKING: Kind = Kind {
 
 pub(super) const BOND: Kind = Kind {
     name: "bond",
-    doc: "Glue between grains: a spring that also pulls, until it breaks.",
+    doc: "Glue between grains: a spring that acts in compression and tension until it breaks.",
     role: Role::Nested,
     fields: &[
         required(
             "stiffness",
             per("MN/m", 0.1, 1000.0, &CONTACT_OR_PARTICLE),
-            "of a bond beside the contact, normal; along it times `shear_ratio`",
+            "normal stiffness of a bond, parallel to the contact; the shear stiffness is this value x `shear_ratio`",
         ),
-        required("tensile_strength", number("kN", 1e-3, 1000.0), "force at which it breaks when pulled"),
-        required("shear_strength", number("kN", 1e-3, 1000.0), "force at which it breaks when sheared"),
+        required("tensile_strength", number("kN", 1e-3, 1000.0), "tensile force at which the bond breaks"),
+        required("shear_strength", number("kN", 1e-3, 1000.0), "shear force at which the bond breaks"),
     ],
     alternatives: &[],
     planned: &[],
@@ -257,30 +275,35 @@ pub(super) const SOIL: Kind = Kind {
     doc: "A continuous layer: soil, treated soil, concrete or a ballast mat.",
     role: Role::Part,
     fields: &[
-        way("youngs_modulus", along(number("MPa", 1.0, 50_000.0)), ""),
-        way("poisson_ratio", number("", 0.0, 0.49), ""),
-        way("bulk_modulus", number("MPa", 0.3, 1e6), ""),
-        way("shear_modulus", number("MPa", 0.3, 25_000.0), ""),
-        required("density", number("kg/m^3", 100.0, 3500.0), "with its pores and water"),
-        default("spread", SPREAD, "35 deg", "angle against the vertical at which the layer spreads a load"),
+        way("youngs_modulus", along(number("MPa", 1.0, 50_000.0)), "Young's modulus"),
+        way("poisson_ratio", number("", 0.0, 0.49), "Poisson's ratio"),
+        way("bulk_modulus", number("MPa", 0.3, 1e6), "bulk modulus"),
+        way("shear_modulus", number("MPa", 0.3, 25_000.0), "shear modulus"),
+        required("density", number("kg/m^3", 100.0, 3500.0), "density including pores and water"),
+        default("spread", SPREAD, "35 deg", "angle from the vertical at which the layer spreads a load"),
         default(
             "strength",
             Form::Words(&[
-                word("elastic", "it does not yield"),
+                word("elastic", "the soil does not yield"),
                 Word {
                     name: "mohr_coulomb",
-                    doc: "it yields where shear exceeds cohesion + tan(friction_angle) x pressure",
+                    doc: "the soil yields if the shear stress exceeds cohesion + tan(friction_angle) x normal pressure",
                     arguments: &[
-                        required("cohesion", number("kPa", 0.0, 10_000.0), ""),
-                        required("friction_angle", number("deg", 0.0, 60.0), ""),
-                        default("dilation", number("deg", 0.0, 60.0), "0 deg", "not above the friction angle"),
+                        required("cohesion", number("kPa", 0.0, 10_000.0), "cohesion of the soil"),
+                        required("friction_angle", number("deg", 0.0, 60.0), "angle of internal friction"),
+                        default(
+                            "dilation",
+                            number("deg", 0.0, 60.0),
+                            "0 deg",
+                            "angle of dilation; not above the friction angle",
+                        ),
                         default("tension", number("kPa", 0.0, 10_000.0), "0 kPa", "tensile strength"),
                     ],
                     planned: false,
                 },
             ]),
             "elastic",
-            "",
+            "whether the soil yields",
         ),
     ],
     alternatives: &[either(&[&["youngs_modulus", "poisson_ratio"], &["bulk_modulus", "shear_modulus"]])],
@@ -289,21 +312,21 @@ pub(super) const SOIL: Kind = Kind {
 
 pub(super) const APPROACH_SLAB: Kind = Kind {
     name: "approach_slab",
-    doc: "A plate in the layers before a structure. It spreads the load; hinged to the structure, it keeps its end from sinking.",
+    doc: "A plate in the layers beside a structure. It spreads the load. If it is hinged to the structure, the end at the structure does not settle.",
     role: Role::Nested,
     fields: &[
-        required("thickness", number("m", 0.1, 1.0), ""),
-        required("youngs_modulus", number("GPa", 5.0, 60.0), "of the plate, such as concrete"),
-        required("density", number("kg/m^3", 1000.0, 3500.0), "of the plate"),
-        required("depth", number("m", 0.1, 5.0), "of its top below the sleepers"),
+        required("thickness", number("m", 0.1, 1.0), "thickness of the plate"),
+        required("youngs_modulus", number("GPa", 5.0, 60.0), "Young's modulus of the plate, usually concrete"),
+        required("density", number("kg/m^3", 1000.0, 3500.0), "density of the plate"),
+        required("depth", number("m", 0.1, 5.0), "depth of the top of the plate below the sleepers"),
         default(
             "hinged",
             Form::Words(&[
-                word("yes", "its end at the boundary rests on the structure"),
-                word("no", "it lies on the ground"),
+                word("yes", "the end at the boundary rests on the structure"),
+                word("no", "the whole plate lies on the ground"),
             ]),
             "yes",
-            "at the boundary from which `over` counts",
+            "hinge to the structure, at the boundary from which `over` is measured",
         ),
     ],
     alternatives: &[],

@@ -1,4 +1,4 @@
-//! The one vocabulary: every kind, field, word, unit, range and default of the language.
+//! The vocabulary of the language: every kind, field, word, unit, range and default.
 //!
 //! Checking, defaults and `trackbed docs` all read this table; a field is added in one place, `kinds.rs`.
 
@@ -17,7 +17,7 @@ pub use docs::{field_page, form_text, index, page, section};
 pub use kinds::{COMMON, KINDS, RANDOM};
 pub use reads::{Reader, Reads};
 
-/// A kind of declaration, or of a value that only stands inside one.
+/// A kind of declaration, or a kind of value that occurs only inside declarations.
 #[derive(Debug)]
 pub struct Kind {
     pub name: &'static str,
@@ -29,19 +29,19 @@ pub struct Kind {
     pub planned: &'static [&'static str],
 }
 
-/// What a declaration of a kind does.
+/// The role of a declaration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// A thing that others name.
+    /// A part that other declarations refer to by name.
     Part,
-    /// Acts by itself in the main file.
+    /// Acts without being referred to, in the main file.
     Scene {
-        /// At most one a scene.
+        /// Whether a scene has at most one.
         once: bool,
     },
-    /// A thing that others name, and that says what differs in a thing of that kind: it has its fields too, none needed.
+    /// A part that changes another part of the named kind. It also has the fields of that kind, all optional.
     Changes(&'static str),
-    /// Stands only as the value of a field.
+    /// Occurs only as the value of a field.
     Nested,
 }
 
@@ -52,7 +52,7 @@ pub struct Field {
     pub form: Form,
     pub need: Need,
     pub doc: &'static str,
-    /// No run of this version reads it.
+    /// Whether no run of this version reads the field.
     pub unread: bool,
 }
 
@@ -60,13 +60,13 @@ pub struct Field {
 pub enum Need {
     Required,
     Optional,
-    /// Used where nothing is given, written in the language itself.
+    /// The value if the field is not given, written in the language itself.
     Default(&'static str),
-    /// Needed or not as its [`Alternative`] says.
+    /// Required or not, as the [`Alternative`] of the field says.
     Alternative,
 }
 
-/// What may stand as a value.
+/// The form of a value.
 #[derive(Debug)]
 pub enum Form {
     Text,
@@ -77,11 +77,11 @@ pub enum Form {
         max: u32,
     },
     Words(&'static [Word]),
-    /// An object of that kind, or the name of one.
+    /// An object of this kind, or the name of one.
     Object(&'static str),
     OneOf(&'static [Form]),
     List(&'static Form),
-    /// `[key: value]`; where only a key stands, its value is `implied`.
+    /// `[key: value]`; a key without a value has the value `implied`.
     Pairs {
         key: &'static Form,
         value: &'static Form,
@@ -108,7 +108,7 @@ pub enum Form {
 /// A number with its unit, range and basis.
 #[derive(Debug, Clone, Copy)]
 pub struct Measure {
-    /// The unit in which the range stands and in which messages speak; empty for a plain number.
+    /// Unit of the range and of messages; empty for a plain number.
     pub unit: &'static str,
     pub min: f64,
     pub max: f64,
@@ -123,12 +123,12 @@ pub enum Varies {
     Yes,
 }
 
-/// What a value belongs to: one rail, or a whole that the model halves.
+/// The basis of a value: one rail, or a unit of both rails, which the model of one rail halves.
 #[derive(Debug, PartialEq)]
 pub struct Basis {
-    /// Names with the factor to the value of one rail; the range is of the first.
+    /// Names, each with the factor to the value of one rail; the range of the field refers to the first name.
     pub names: &'static [(&'static str, f64)],
-    /// Taken where nothing is said; without it, leaving it out is an error.
+    /// The basis if none is written; `None` makes a missing basis an error.
     pub assumed: Option<&'static str>,
 }
 
@@ -138,44 +138,44 @@ pub struct Word {
     pub name: &'static str,
     pub doc: &'static str,
     pub arguments: &'static [Field],
-    /// Known to the language, not to this version.
+    /// Whether the word is in the language but not in this version.
     pub planned: bool,
 }
 
-/// Fields that say the same thing in different ways. Giving one way drops the inherited others; ways given together
-/// must agree within 2 %.
+/// Fields that give the same quantity in different ways. A given way removes the other inherited ways. Ways that are
+/// given together must agree within 2 %.
 #[derive(Debug)]
 pub struct Alternative {
-    /// Each way lists the paths that it needs.
+    /// Each way is the list of paths that it needs.
     pub ways: &'static [&'static [&'static str]],
-    /// Field and value where no way is given; without it one way is required.
+    /// Field and value if no way is given; `None` makes one way required.
     pub default: Option<(&'static str, &'static str)>,
-    /// Whether only one way may be given: they say different things.
+    /// Whether only one way may be given, because the ways have different meanings.
     pub exclusive: bool,
 }
 
 /// Kinds of the language that this version does not read yet.
 pub const PLANNED_KINDS: &[&str] = &[];
 
-/// The kind of that name, nested ones included.
+/// The kind with this name, including nested kinds.
 pub fn kind(name: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|k| k.name == name)
 }
 
-/// Whether a value may be `per` that.
+/// Whether a value may be `per` this name.
 pub fn basis_name(name: &str) -> bool {
     let fields = KINDS.iter().flat_map(|k| k.fields);
     let mut bases = fields.filter_map(|f| f.form.measure()?.basis);
     bases.any(|basis| basis.names.iter().any(|(known, _)| *known == name))
 }
 
-/// The kind that a name which is none most likely stands for.
+/// The kind that an unknown name most likely means.
 pub fn meant_kind(name: &str) -> Option<&'static Kind> {
     let stands = || KINDS.iter().filter(|k| k.role != Role::Nested).map(|k| k.name);
     kind(called(Names::Kinds, name, stands()).or_else(|| crate::diag::nearest::nearest(name, stands()))?)
 }
 
-/// The word of that name, in whichever field it stands.
+/// The word with this name, in any field.
 pub fn word(name: &str) -> Option<&'static Word> {
     KINDS.iter().flat_map(|k| k.fields).find_map(|f| f.form.word(name))
 }
@@ -186,7 +186,7 @@ impl Kind {
         own.or_else(|| self.changed_field(name))
     }
 
-    /// The kind of which it says what differs.
+    /// The kind that a declaration of this kind changes.
     pub fn changes(&self) -> Option<&'static Kind> {
         match self.role {
             Role::Changes(of) => kind(of),
@@ -194,29 +194,29 @@ impl Kind {
         }
     }
 
-    /// A field of the kind of which it says what differs.
+    /// A field of the kind that a declaration of this kind changes.
     pub fn changed_field(&self, name: &str) -> Option<&'static Field> {
         self.changes()?.fields.iter().find(|f| f.name == name)
     }
 
-    /// Names of its fields, and of those that it may change.
+    /// Names of the fields of this kind, and of the fields that it may change.
     pub fn field_names(&self) -> impl Iterator<Item = &'static str> {
         self.fields.iter().chain(self.changes().into_iter().flat_map(|k| k.fields)).map(|f| f.name)
     }
 
-    /// The field that a name which it does not have most likely stands for.
+    /// The field that an unknown name most likely means.
     pub fn meant(&self, name: &str) -> Option<&'static str> {
         let known = called(Names::Fields, name, self.field_names());
         known.or_else(|| crate::diag::nearest::nearest(name, self.field_names()))
     }
 
-    /// The field, and the word in it, that have an argument of that name.
+    /// The field and its word that have an argument with this name.
     pub fn argument(&self, name: &str) -> Option<(&'static Field, &'static Word)> {
         let takes = |word: &&Word| word.arguments.iter().any(|a| a.name == name);
         self.fields.iter().find_map(|field| Some((field, field.form.words().into_iter().find(takes)?)))
     }
 
-    /// Whether the language has such a field, and this version does not read it.
+    /// Whether the language has this field but this version does not read it.
     pub fn plans(&self, name: &str) -> bool {
         self.planned.contains(&name) || self.changes().is_some_and(|k| k.plans(name))
     }
@@ -235,7 +235,7 @@ impl Basis {
 }
 
 impl Form {
-    /// What was expected, for a message: `a stiffness in MN/m`.
+    /// The expected value, for a message: `a stiffness in MN/m`.
     pub fn describe(&self) -> String {
         match self {
             Form::Text => "text in double quotes".into(),
@@ -274,7 +274,7 @@ impl Form {
         }
     }
 
-    /// The word of that name that the form knows.
+    /// The word of the form with this name.
     pub fn word(&self, name: &str) -> Option<&'static Word> {
         match self {
             Form::Words(words) => words.iter().find(|w| w.name == name),
@@ -284,7 +284,7 @@ impl Form {
         }
     }
 
-    /// The measure of its number, of the first where several units may stand.
+    /// The measure of the number; the first measure if several units are allowed.
     pub fn measure(&self) -> Option<&Measure> {
         match self {
             Form::Number(measure) => Some(measure),
@@ -293,7 +293,7 @@ impl Form {
         }
     }
 
-    /// Every word that the form knows.
+    /// All words of the form.
     pub fn words(&self) -> Vec<&'static Word> {
         match self {
             Form::Words(words) => words.iter().collect(),

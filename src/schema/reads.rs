@@ -1,15 +1,15 @@
-//! Who reads what: each part of the program that turns fields of a scene into a plan says which ones, and where it acts.
+//! Fields that each part of the planner reads, and the scenes in which the part acts.
 
-/// Fields that a part of the program reads, and where it acts.
+/// Fields that a part of the program reads, and the scenes in which it acts.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Reads {
     /// Fields as `kind.field`.
     pub fields: &'static [&'static str],
-    /// Goes on after "they act only": `where trains run`.
+    /// The end of the sentence "they act only ...": `where trains run`.
     pub acts_where: &'static str,
 }
 
-/// What a part of the program reads, and whether it acted on a scene.
+/// The fields that a part of the program reads, and whether it acted on a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reader {
     pub reads: &'static Reads,
@@ -17,7 +17,7 @@ pub struct Reader {
 }
 
 impl Reads {
-    /// Whether it reads a field, given as `kind.field`.
+    /// Whether the part reads a field, given as `kind.field`.
     pub fn has(&self, field: &str) -> bool {
         self.fields.contains(&field)
     }

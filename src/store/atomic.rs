@@ -1,10 +1,12 @@
-//! Writes a file so that a reader, or a power cut, finds the old content or the new one and never a half.
+//! Writes a file so that a reader, or a restart after a power cut, finds either the old or the new content, never a
+//! part.
 
 use super::StoreError;
 use super::disk::{Disk, FileSystem};
 use std::path::{Path, PathBuf};
 
-/// Replaces `path` by `bytes`: a temporary name in the same directory, synced, then renamed. Fails where the operating system refuses.
+/// Replaces the content of `path` by `bytes`: writes a temporary file in the same directory, syncs it, then renames it.
+/// Fails if the operating system refuses.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     remove_left_over(path);
     let temporary = temporary_name(path);
@@ -13,8 +15,8 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     })
 }
 
-/// Replaces the content of an existing file and keeps its permissions; of a link, that of the file it leads to. Fails where the operating
-/// system refuses.
+/// Replaces the content of an existing file, or of the target of a link, and keeps its permissions. Fails if the
+/// operating system refuses.
 pub fn rewrite_atomically(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     let failed = |cause| StoreError::io(path, "write", cause);
     let path = path.canonicalize().map_err(failed)?;
@@ -27,14 +29,14 @@ pub fn rewrite_atomically(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     })
 }
 
-/// Replaces `path` on a disk, by way of a temporary file beside it.
+/// Replaces `path` on a disk through a temporary file beside it.
 pub(super) fn replace(disk: &impl Disk, path: &Path, temporary: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     let written = disk.write(temporary, bytes).and_then(|()| disk.rename(temporary, path));
     let synced = written.and_then(|()| path.parent().map_or(Ok(()), |folder| disk.sync_folder(folder)));
     synced.map_err(|cause| StoreError::io(path, "write", cause))
 }
 
-/// Removes what killed processes have left of earlier attempts at a file. What is younger than an hour may be another process at work.
+/// Removes temporary files of killed processes. A file younger than an hour may belong to a running process and stays.
 fn remove_left_over(path: &Path) {
     let (Some(folder), Some(name)) = (path.parent(), path.file_name()) else { return };
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -51,7 +53,7 @@ fn remove_left_over(path: &Path) {
     }
 }
 
-/// An attempt at a file that has not ended after this time was killed.
+/// Age after which a temporary file belongs to a killed process.
 const LEFT_OVER: std::time::Duration = std::time::Duration::from_secs(3600);
 
 /// A name that no other process uses.

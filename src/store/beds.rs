@@ -1,4 +1,4 @@
-//! Packed beds that were built before, by what made them.
+//! Packed beds from earlier runs, by the hash of their recipe.
 
 use super::{Shelf, StoreError, sha256};
 use crate::solvers::granular::packing::{METHOD, Packed, PackingError, Progress, Recipe, StoredBed, pack};
@@ -8,27 +8,27 @@ use serde::de::DeserializeOwned;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Names what a recipe makes: the same recipe gives the same bed, bit by bit, for one version of the program.
+/// Hash of a recipe: the same recipe gives the same bed, bit by bit, for one version of the program.
 pub fn bed_hash(recipe: &Recipe) -> String {
     recipe_hash(recipe)
 }
 
-/// Names what is made of `what` by the way in which beds are packed and read today.
+/// Hash of `what`, together with the current method of packing and reading beds.
 pub fn recipe_hash(what: &impl Serialize) -> String {
     sha256(format!("{METHOD} {}", serde_json::to_string(what).unwrap_or_default()).as_bytes())
 }
 
-/// Where beds are kept. Of threads and processes that want the same bed one packs it, and the others wait for it.
+/// The store of beds. If several threads or processes need the same bed, one packs it and the others wait.
 #[derive(Debug, Default)]
 pub struct Beds {
     shelf: Option<Shelf>,
 }
 
-/// Why there is no bed.
+/// The reason why there is no bed.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BedsError {
     Packing(PackingError),
-    /// What was packed does not come back from what is kept of it.
+    /// The packed bed cannot be restored from its stored form.
     Restore(RestoreError),
 }
 
@@ -43,39 +43,39 @@ impl fmt::Display for BedsError {
 
 impl std::error::Error for BedsError {}
 
-/// A bed, and how it came about.
+/// A bed, and whether it was stored.
 pub struct FoundBed {
     pub packed: Packed<f32>,
-    /// Whether it was there already.
+    /// Whether it was already stored.
     pub was_kept: bool,
-    /// What was wrong with the one that was there: it has been thrown away, and packed anew.
+    /// Damage of the stored bed, which was deleted and packed again.
     pub damage: Option<StoreError>,
-    /// Why a new one is not kept.
+    /// The reason why the new bed is not stored.
     pub loss: Option<StoreError>,
 }
 
 impl Beds {
-    /// Beds in a folder, which is made where it does not exist.
+    /// Beds in a folder, which is created if it does not exist.
     pub fn kept_in(folder: impl Into<PathBuf>) -> Beds {
         Beds { shelf: Some(Shelf::new(folder, "bed")) }
     }
 
-    /// Beds that are kept nowhere: each is packed anew.
+    /// Beds that are not stored: each bed is packed again.
     pub fn not_kept() -> Beds {
         Beds::default()
     }
 
-    /// The folder of the beds; `None` where they are kept nowhere.
+    /// The folder of the beds; `None` if beds are not stored.
     pub fn folder(&self) -> Option<&Path> {
         self.shelf.as_ref().map(Shelf::folder)
     }
 
-    /// The bed of a recipe: as it was kept, or packed and kept. `tell` hears how far packing is, and may end it. Fails where it cannot be
-    /// packed; a bed that cannot be read or kept is packed all the same.
+    /// The bed of a recipe, from the store or packed and stored. `tell` receives the progress of packing and may end
+    /// it. Fails if the bed cannot be packed; a bed that cannot be read or stored is packed anyway.
     pub fn bed<A: Answer>(&self, recipe: &Recipe, tell: impl FnMut(&Progress) -> A) -> Result<FoundBed, BedsError> {
         let Some(shelf) = &self.shelf else { return packed(recipe, tell, |_| None) };
         let hash = bed_hash(recipe);
-        // what is there is read without a lock: a folder may be there to be read only
+        // a stored bed is read without a lock: the folder may be read-only
         if let Ok(Some(packed)) = kept(shelf, &hash) {
             return Ok(FoundBed { packed, was_kept: true, damage: None, loss: None });
         }
@@ -93,8 +93,8 @@ impl Beds {
         Ok(FoundBed { damage, ..found })
     }
 
-    /// What is built on beds, by the hash of what makes it: as it was kept, or built and kept. What cannot be read or kept is built all the
-    /// same. A track of forty bays takes 0.2 GB, so only the newest few are kept.
+    /// A value built on beds, by its hash, from the store or built and stored. A value that cannot be read or stored is
+    /// built anyway. A track of forty bays takes 0.2 GB, so only the newest few are stored.
     pub fn built<T: Serialize + DeserializeOwned, E>(
         &self,
         hash: &str,
@@ -112,11 +112,12 @@ impl Beds {
     }
 }
 
-/// The word for what is built on beds, and how many of them are kept.
+/// The kind of values that are built on beds, and the number of stored values.
 const BUILT: &str = "track";
 const BUILT_KEPT: usize = 4;
 
-/// Packs a bed and keeps it. What comes later must not know whether it was kept: it goes on from what is stored in both cases.
+/// Packs a bed and stores it. In both cases the run continues from the stored form, so the result does not depend on
+/// whether the bed was stored before.
 fn packed<A: Answer>(
     recipe: &Recipe,
     tell: impl FnMut(&Progress) -> A,
@@ -128,7 +129,7 @@ fn packed<A: Answer>(
     Ok(FoundBed { packed, was_kept: false, damage: None, loss })
 }
 
-/// A bed that was kept; `None` where there is none. Fails where it is damaged.
+/// A stored bed; `None` if there is none. Fails if it is damaged.
 fn kept(shelf: &Shelf, hash: &str) -> Result<Option<Packed<f32>>, StoreError> {
     let Some(stored) = shelf.get::<StoredBed<f32>>(hash)? else { return Ok(None) };
     Packed::restore(stored).map(Some).map_err(|error| StoreError::damaged(&shelf.path(hash), error))
@@ -140,7 +141,7 @@ mod tests {
     use std::fs::{self, File};
     use std::time::{Duration, SystemTime};
 
-    /// Where the clock has gone back, what was built last is the oldest by its date.
+    /// If the clock was set back, the last built value has the oldest date.
     #[test]
     fn what_was_built_last_is_kept_whatever_its_date() {
         let folder = tempfile::tempdir().unwrap();

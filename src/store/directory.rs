@@ -14,48 +14,49 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// What may be done with what is in a directory already.
+/// The allowed use of a directory that has content.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// Nothing: the directory must be empty, but for hidden files.
+    /// The directory must be empty, except for hidden files.
     New,
-    /// Go on with the same work, finished or not; begin it where the directory is empty.
+    /// Continue the same work, finished or not; start it if the directory is empty.
     Resume,
-    /// Discard unfinished work, and replace finished work when the new one is. Files that no manifest names stay, unless a result of
-    /// the same name takes their place.
+    /// Discard unfinished work, and replace finished work when the new work is finished. Files that are not in the
+    /// manifest stay, unless a result has the same name.
     Force,
 }
 
-/// A directory in which work is under way; nobody else can open it until this is dropped.
+/// A directory with work in progress; no other process can open it until this is dropped.
 ///
-/// Old results stay as they are, and readable, until [`Directory::commit`].
+/// Old results stay unchanged and readable until [`Directory::commit`].
 #[derive(Debug)]
 pub struct Directory<D: Disk = FileSystem> {
     disk: D,
     unfinished: Unfinished,
     finished: Option<Finished>,
-    /// Files of the next results, staged or kept from the last.
+    /// Files of the next results, staged or taken from the last results.
     files: Vec<FileRecord>,
-    /// The version that made results which are amended.
+    /// The program version of results that are amended.
     version: Option<String>,
     _lock: Lock,
 }
 
 impl Directory {
-    /// Opens a directory for some work, and makes it where it does not exist. A commit that was interrupted is finished first.
+    /// Opens a directory for some work, and creates it if it does not exist. An interrupted commit is finished first.
     ///
-    /// Fails where somebody else works there, where it holds what `mode` does not allow, and in [`Mode::Resume`] where it is of other
-    /// work or a finished file is damaged.
+    /// Fails if another process works there, if `mode` does not allow its content, and in [`Mode::Resume`] if it
+    /// belongs to other work or a finished file is damaged.
     pub fn open(path: &Path, work: Work, mode: Mode) -> Result<Directory, StoreError> {
         Directory::open_on(FileSystem, path, work, mode)
     }
 
-    /// Opens finished work to add files to it, or to replace some. Fails where nothing is finished there, and where other work has begun
-    /// over it, which a commit would end.
+    /// Opens finished work to add or replace files. Fails if there is no finished work, and if other work has started
+    /// in the directory, because a commit would end that work.
     pub fn amend(path: &Path) -> Result<Directory, StoreError> {
         let layout = Layout { root: path.to_owned() };
-        let nothing = || StoreError::damaged(&layout.manifest(), "there is none: nothing is finished here");
-        Finished::open(path)?.ok_or_else(nothing)?; // before anything is made there
+        let nothing =
+            || StoreError::damaged(&layout.manifest(), "there is no manifest: the directory has no finished results");
+        Finished::open(path)?.ok_or_else(nothing)?; // before anything is created there
         let lock = enter(&FileSystem, &layout)?;
         recovery::recover(&FileSystem, &layout)?;
         if layout.is_unfinished() {
@@ -69,11 +70,11 @@ impl Directory {
 }
 
 impl<D: Disk> Directory<D> {
-    /// The same as [`Directory::open`] on a disk of one's own.
+    /// The same as [`Directory::open`], on a given disk.
     pub fn open_on(disk: D, path: &Path, work: Work, mode: Mode) -> Result<Directory<D>, StoreError> {
         let layout = Layout { root: path.to_owned() };
         if mode != Mode::Force && !layout.inner().exists() {
-            refuse_foreign(&layout)?; // before anything is made there
+            refuse_foreign(&layout)?; // before anything is created there
         }
         let lock = enter(&disk, &layout)?;
         match recovery::recover(&disk, &layout) {
@@ -105,17 +106,17 @@ impl<D: Disk> Directory<D> {
         &self.unfinished.layout
     }
 
-    /// The work under way here, as others see it.
+    /// The work in progress, as other processes see it.
     pub fn shared(&self) -> &Unfinished {
         &self.unfinished
     }
 
-    /// What was finished here before, in [`Mode::Resume`]: each of its files has been checked.
+    /// Earlier finished results in [`Mode::Resume`]; each file has been checked.
     pub fn finished(&self) -> Option<&Finished> {
         self.finished.as_ref()
     }
 
-    /// Replaces the checkpoint by `state`, at once, and gives its size in bytes. Fails where a number of it is not finite.
+    /// Replaces the checkpoint by `state` atomically, and returns its size in bytes. Fails if a number is not finite.
     pub fn write_checkpoint<T: Serialize + DeserializeOwned>(&self, state: &T) -> Result<usize, StoreError> {
         let path = self.layout().checkpoint();
         let bytes = self.unfinished.checkpoint_seal().close_json(&path, state)?;
@@ -128,9 +129,10 @@ impl<D: Disk> Directory<D> {
         self.unfinished.read_checkpoint()
     }
 
-    /// Keeps data beside the checkpoint until the commit; a key is one word, and keeping it again replaces it.
+    /// Stores data beside the checkpoint until the commit. The key is one word; storing the same key again replaces the
+    /// data.
     ///
-    /// A piece that no checkpoint names, because of a kill in between, is not in the way: it is kept again.
+    /// A piece that no checkpoint refers to, after a kill in between, is replaced when it is stored again.
     pub fn keep(&self, key: &str, bytes: &[u8]) -> Result<Piece, StoreError> {
         let (folder, path) = (self.layout().pieces(), self.unfinished.piece(key)?);
         self.disk.create_folder(&folder).map_err(|cause| StoreError::io(&folder, "create", cause))?;
@@ -148,17 +150,17 @@ impl<D: Disk> Directory<D> {
         self.unfinished.read_piece(piece)
     }
 
-    /// Writes a file of the next results, which nobody sees before the commit. Folders in its name are parted by `/`.
+    /// Writes a file of the next results, which is not visible before the commit. `/` separates folders in its name.
     pub fn stage(&mut self, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
         self.stage_as(FileRecord { name: name.to_owned(), sha256: Some(sha256(bytes)) }, bytes)
     }
 
-    /// The same of a file that differs between equal runs, such as timings: the manifest names it without a hash.
+    /// The same for a file that differs between equal runs, such as timings: the manifest has no hash of it.
     pub fn stage_changing(&mut self, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
         self.stage_as(FileRecord { name: name.to_owned(), sha256: None }, bytes)
     }
 
-    /// Puts everything that was staged in place of the old results, at once, and ends the unfinished work.
+    /// Replaces the old results by the staged files atomically, and ends the unfinished work.
     pub fn commit(self) -> Result<Finished, StoreError> {
         let _gate = Lock::wait(&self.layout().gate())?;
         let manifest = Manifest::new(self.version.as_deref(), self.unfinished.work.clone(), self.files.clone());
@@ -170,7 +172,7 @@ impl<D: Disk> Directory<D> {
     fn stage_as(&mut self, record: FileRecord, bytes: &[u8]) -> Result<(), StoreError> {
         let path = self.layout().staging().join(&record.name);
         if !is_inside(&record.name) {
-            return Err(StoreError::unwritable(&path, "it has no name of a result"));
+            return Err(StoreError::unwritable(&path, "the name is not valid for a result"));
         }
         let folder = path.parent().map_or_else(|| self.layout().staging(), PathBuf::from);
         let written = self.disk.create_folder(&folder).and_then(|()| self.disk.write(&path, bytes));
@@ -186,7 +188,7 @@ impl<D: Disk> Directory<D> {
     }
 }
 
-/// Makes the folders of a directory and takes its lock.
+/// Creates the folders of a directory and takes its lock.
 pub(super) fn enter(disk: &impl Disk, layout: &Layout) -> Result<Lock, StoreError> {
     if layout.root.is_file() {
         let cause = std::io::Error::from(ErrorKind::NotADirectory);
@@ -196,7 +198,8 @@ pub(super) fn enter(disk: &impl Disk, layout: &Layout) -> Result<Lock, StoreErro
     Lock::take(&layout.lock(), &layout.root)
 }
 
-/// What a resumed work finds finished. Unfinished work comes first: it was begun over finished one.
+/// Finished results for work that is resumed. Unfinished work has priority, because it was started after the finished
+/// work.
 fn found(layout: &Layout, work: &Work) -> Result<Option<Finished>, StoreError> {
     if layout.is_unfinished() {
         return same(layout, work, &Unfinished::work_in(layout)?).map(|()| None);
@@ -222,7 +225,7 @@ fn same(layout: &Layout, expected: &Work, found: &Work) -> Result<(), StoreError
     Ok(())
 }
 
-/// Fails where anything is there.
+/// Fails if the directory has any content.
 fn refuse_any(layout: &Layout) -> Result<(), StoreError> {
     let path = layout.root.clone();
     if layout.is_unfinished() {
@@ -234,7 +237,7 @@ fn refuse_any(layout: &Layout) -> Result<(), StoreError> {
     }
 }
 
-/// Says whose unfinished work is there.
+/// The error for unfinished work in the directory.
 fn unfinished(layout: &Layout) -> Result<StoreError, StoreError> {
     let work = match Unfinished::work_in(layout) {
         Ok(work) => work.name,
@@ -244,7 +247,7 @@ fn unfinished(layout: &Layout) -> Result<StoreError, StoreError> {
     Ok(StoreError::Unfinished { path: layout.root.clone(), work })
 }
 
-/// Fails where files are there that no manifest names. Hidden ones belong to tools and are nobody's results.
+/// Fails if there are files that are not in a manifest. Hidden files belong to tools and are ignored.
 fn refuse_foreign(layout: &Layout) -> Result<(), StoreError> {
     let path = layout.root.clone();
     if layout.manifest().exists() || !path.is_dir() {

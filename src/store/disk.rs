@@ -1,27 +1,27 @@
-//! Everything that the store changes on a disk, one operation at a time, so that tests can stop after any of them.
+//! Disk operations of the store, one at a time, so that tests can stop after any operation.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Changes to files. A kill falls between two of them, or leaves the one that runs half done.
+/// Changes to files. A kill occurs between two operations, or leaves the current operation incomplete.
 pub trait Disk {
-    /// Makes a folder and those above it; one that is there is fine.
+    /// Creates a folder and its parents; an existing folder is no error.
     fn create_folder(&self, path: &Path) -> io::Result<()>;
 
-    /// Writes a new file, or over an old one; its bytes are durable when this returns, its name need not be.
+    /// Writes a new file or overwrites an old one. The bytes are durable on return; the name may not be.
     fn write(&self, path: &Path, bytes: &[u8]) -> io::Result<()>;
 
-    /// Gives a file another name, at once; a file that has it already is replaced.
+    /// Renames a file atomically; an existing file with the new name is replaced.
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
 
-    /// Removes a file; one that is gone is fine.
+    /// Removes a file; a missing file is no error.
     fn remove_file(&self, path: &Path) -> io::Result<()>;
 
-    /// Removes a folder with all that is in it; one that is gone is fine.
+    /// Removes a folder with its content; a missing folder is no error.
     fn remove_folder(&self, path: &Path) -> io::Result<()>;
 
-    /// Makes the names in a folder durable. Not every file system can, and the files are safe without it.
+    /// Makes the names in a folder durable, if the file system supports it. Files are safe without it.
     fn sync_folder(&self, path: &Path) -> io::Result<()>;
 }
 

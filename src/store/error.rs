@@ -1,33 +1,33 @@
-//! What can go wrong with a directory of results or a kept bed: each names the file, says what is wrong, and knows a way out.
+//! Errors of directories of results and of stored beds: each names the file, the fault, and a remedy.
 
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A failure to keep or to read back.
+/// A failure to store or to read data.
 #[derive(Debug)]
 pub enum StoreError {
     /// The operating system refused.
     Io { path: PathBuf, action: &'static str, cause: io::Error },
-    /// The file is there but is not what was written.
+    /// The file exists but has not the content that was written.
     Damaged { path: PathBuf, cause: String },
-    /// The data cannot be put into the file's format.
+    /// The data cannot be written in the format of the file.
     Unwritable { path: PathBuf, cause: String },
-    /// A file of another scene; both as SHA-256.
+    /// A file of another scene; both scenes as SHA-256.
     OtherScene { path: PathBuf, expected: String, found: String },
     /// A file of another version of the program.
     OtherVersion { path: PathBuf, expected: String, found: String },
-    /// A directory of other work than the one that was asked for, such as a study.
+    /// A directory of other work than requested, such as a study.
     OtherWork { path: PathBuf, expected: String, found: String },
-    /// Another process works in the directory now.
+    /// Another process is working in the directory.
     Busy { path: PathBuf },
     /// The directory holds the results of finished work.
     Finished { path: PathBuf, work: String },
-    /// The directory holds work that was interrupted.
+    /// The directory holds interrupted work.
     Unfinished { path: PathBuf, work: String },
-    /// Nothing is finished in the directory, and no work there has kept anything yet.
+    /// The directory holds neither finished results nor work in progress.
     Empty { path: PathBuf },
-    /// The directory holds files that no manifest names; the first of them by name, and how many there are.
+    /// The directory holds files that are not in a manifest: the first by name, and their number.
     Foreign { path: PathBuf, first: String, count: usize },
 }
 
@@ -44,23 +44,23 @@ impl StoreError {
         StoreError::Unwritable { path: path.to_owned(), cause: one_line(&cause.to_string()) }
     }
 
-    /// Whether what was found belongs to another scene, to other work, or to another version of the program.
+    /// Whether the file belongs to another scene, to other work, or to another version of the program.
     pub fn is_of_another(&self) -> bool {
         matches!(self, StoreError::OtherScene { .. } | StoreError::OtherVersion { .. } | StoreError::OtherWork { .. })
     }
 
-    /// A way out, as a sentence to a person at the command line.
+    /// Help for the user at the command line.
     pub fn help(&self) -> &'static str {
         match self {
-            StoreError::Io { .. } | StoreError::Unwritable { .. } => "give another directory, or make room in this one",
-            StoreError::Damaged { .. } => "run it anew with `--force`",
+            StoreError::Io { .. } | StoreError::Unwritable { .. } => "use another directory, or make space in this one",
+            StoreError::Damaged { .. } => "run again with `--force`",
             StoreError::OtherScene { .. } | StoreError::OtherVersion { .. } | StoreError::OtherWork { .. } => {
-                "run it without `--resume` into another `--out`, or replace what is there with `--force`"
+                "run without `--resume` into another `--out`, or replace the results with `--force`"
             }
-            StoreError::Busy { .. } => "wait until it has ended, or give another `--out`",
+            StoreError::Busy { .. } => "wait until the other process has ended, or give another `--out`",
             StoreError::Finished { .. } | StoreError::Foreign { .. } => "give another `--out`, or `--force`",
             StoreError::Empty { .. } => "give the directory that `trackbed run --out` wrote",
-            StoreError::Unfinished { .. } => "go on with `--resume`, or begin anew with `--force`",
+            StoreError::Unfinished { .. } => "continue with `--resume`, or start again with `--force`",
         }
     }
 }
@@ -81,7 +81,7 @@ impl fmt::Display for StoreError {
             StoreError::OtherWork { path, expected, found } => {
                 write!(out, "`{}` holds a {found}, not a {expected}", path.display())
             }
-            StoreError::Busy { path } => write!(out, "another process works in `{}` now", path.display()),
+            StoreError::Busy { path } => write!(out, "another process is working in `{}`", path.display()),
             StoreError::Finished { path, work } => {
                 write!(out, "`{}` holds the results of a finished {work}", path.display())
             }
@@ -90,12 +90,12 @@ impl fmt::Display for StoreError {
                 let path = path.display();
                 write!(
                     out,
-                    "`{path}` holds no results: nothing is finished there, and no run there has kept anything yet"
+                    "`{path}` holds no results: no run is finished there, and no run has stored a checkpoint yet"
                 )
             }
             StoreError::Foreign { path, first, count } => {
                 let more = if *count > 1 { format!(" and {} more", count - 1) } else { String::new() };
-                write!(out, "`{}` holds files that no manifest of results names: `{first}`{more}", path.display())
+                write!(out, "`{}` holds files that are not in a manifest of results: `{first}`{more}", path.display())
             }
         }
     }
@@ -114,7 +114,7 @@ fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The first digits of a hash, enough to tell two apart.
+/// The first digits of a hash, enough to distinguish two hashes.
 fn short(hash: &str) -> String {
     hash.chars().take(12).collect()
 }

@@ -1,4 +1,4 @@
-//! Finished results, read file by file against their manifest.
+//! Finished results; each file is checked against the manifest.
 
 use super::directory::enter;
 use super::layout::Layout;
@@ -15,8 +15,8 @@ pub struct Finished {
 }
 
 impl Finished {
-    /// The results of a directory; `None` where nothing is finished there. A commit that was interrupted is finished first. Fails where
-    /// somebody works on that commit now, or the manifest is damaged.
+    /// The results of a directory; `None` if there are no finished results. An interrupted commit is finished first.
+    /// Fails if another process is finishing this commit, or if the manifest is damaged.
     pub fn open(path: &Path) -> Result<Option<Finished>, StoreError> {
         let layout = Layout { root: path.to_owned() };
         if layout.intent().exists() {
@@ -30,18 +30,18 @@ impl Finished {
         Finished { root, manifest }
     }
 
-    /// The same of a directory that is in order.
+    /// The same for a directory without an interrupted commit.
     pub(super) fn read_from(path: &Path) -> Result<Option<Finished>, StoreError> {
         let manifest = Manifest::read(&Layout { root: path.to_owned() }.manifest())?;
         Ok(manifest.map(|manifest| Finished::new(path.to_owned(), manifest)))
     }
 
-    /// The manifest by which the files are read.
+    /// The manifest of the files.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }
 
-    /// The content of a file; `None` where the manifest does not name it. Fails where it is missing or damaged.
+    /// The content of a file; `None` if it is not in the manifest. Fails if it is missing or damaged.
     pub fn read(&self, name: &str) -> Result<Option<Vec<u8>>, StoreError> {
         let Some(record) = self.manifest.file(name) else { return Ok(None) };
         let path = self.root.join(name);

@@ -1,23 +1,23 @@
-//! Where things stand in a directory of results.
+//! Layout of a directory of results.
 //!
 //! ```text
-//! manifest.json          what the directory is of, and its files
-//! summary.json ...       those files
-//! so_far.html            the page of work that is not finished; it goes with that
-//! .trackbed/lock         held while somebody works here
-//! .trackbed/work         whose unfinished work this is
-//! .trackbed/checkpoint   the state to go on from
-//! .trackbed/pieces/      data that is finished, by its key
-//! .trackbed/claims/      locks of pieces that processes compute now, by the same keys
-//! .trackbed/gate         held by all who add pieces, and alone by who ends the work
-//! .trackbed/logs/        what processes elsewhere have printed
+//! manifest.json          the work of the directory, and its files
+//! summary.json ...       the files of the manifest
+//! so_far.html            the page of unfinished work; removed with the unfinished work
+//! .trackbed/lock         held while a process works here
+//! .trackbed/work         the name and scene of the unfinished work
+//! .trackbed/checkpoint   the state from which the work continues
+//! .trackbed/pieces/      finished pieces of data, by key
+//! .trackbed/claims/      locks of pieces that are being computed, by the same keys
+//! .trackbed/gate         shared lock for processes that add pieces, exclusive lock for the end of the work
+//! .trackbed/logs/        output of processes on other machines
 //! .trackbed/staging/     files of the next results
-//! .trackbed/intent.json  the manifest of staged files that are on their way to their places
+//! .trackbed/intent.json  the manifest of staged files that are being moved to their places
 //! ```
 
 use std::path::{Path, PathBuf};
 
-/// The places of a directory.
+/// The paths in a directory of results.
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     pub root: PathBuf,
@@ -32,7 +32,7 @@ impl Layout {
         self.root.join("so_far.html")
     }
 
-    /// The folder of everything that is no result.
+    /// The folder of everything that is not a result.
     pub fn inner(&self) -> PathBuf {
         self.root.join(".trackbed")
     }
@@ -73,14 +73,14 @@ impl Layout {
         self.inner().join("intent.json")
     }
 
-    /// Whether somebody's unfinished work is there.
+    /// Whether there is unfinished work.
     pub fn is_unfinished(&self) -> bool {
         let holds_any = |folder: &Path| folder.read_dir().is_ok_and(|mut entries| entries.next().is_some());
         self.checkpoint().exists() || holds_any(&self.pieces())
     }
 }
 
-/// A name beside a file under which it is written; only the holder of the lock writes there.
+/// The temporary name of a file while it is written; only the holder of the lock writes there.
 pub(super) fn part(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".part");

@@ -1,21 +1,22 @@
-//! Locks between processes, and between threads too: the system takes them back when a process dies.
+//! Locks between processes and threads: the system releases them when a process dies.
 //!
-//! A lock file stays when its lock is given back: who removed it could remove the one that somebody else has just taken. On a file
-//! system that knows no locks, work goes on without.
+//! A lock file stays after its lock is released, because removing it could remove a lock that another process has just
+//! taken. On a file system without locks the work continues without locks.
 
 use super::StoreError;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
-/// A lock that is held until it is dropped.
+/// A lock, held until this is dropped.
 #[derive(Debug)]
 pub(super) struct Lock {
     _file: File,
 }
 
 impl Lock {
-    /// The lock in a file, at once. Fails with [`StoreError::Busy`] of `directory` where somebody else has it.
+    /// Takes the lock of a file without waiting. Fails with [`StoreError::Busy`] for `directory` if another process has
+    /// it.
     pub fn take(path: &Path, directory: &Path) -> Result<Lock, StoreError> {
         let file = open(path).map_err(|cause| StoreError::io(path, "open", cause))?;
         match file.try_lock() {
@@ -26,7 +27,7 @@ impl Lock {
         }
     }
 
-    /// The lock in a file, at once; `None` where somebody else has it.
+    /// Takes the lock of a file without waiting; `None` if another process has it.
     pub fn claim(path: &Path) -> Result<Option<Lock>, StoreError> {
         match Lock::take(path, path) {
             Err(StoreError::Busy { .. }) => Ok(None),
@@ -34,7 +35,7 @@ impl Lock {
         }
     }
 
-    /// A lock in a file that any number may hold together, when nobody has it alone.
+    /// Takes a shared lock of a file; waits while another process has the exclusive lock.
     pub fn share(path: &Path) -> Result<Lock, StoreError> {
         let file = open(path).map_err(|cause| StoreError::io(path, "open", cause))?;
         match file.lock_shared() {
@@ -43,7 +44,7 @@ impl Lock {
         }
     }
 
-    /// The lock in a file, when everybody before has given it back.
+    /// Takes the exclusive lock of a file; waits until all others have released it.
     pub fn wait(path: &Path) -> Result<Lock, StoreError> {
         let file = open(path).map_err(|cause| StoreError::io(path, "open", cause))?;
         match file.lock() {

@@ -1,4 +1,4 @@
-//! `manifest.json`: what a directory of results is of, and each of its files with its hash.
+//! `manifest.json`: the work of a directory of results, and each file with its hash.
 
 use super::seal::version;
 use super::{StoreError, Work, sha256};
@@ -7,17 +7,17 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// The files of finished work. Equal work leaves equal manifests.
+/// The files of finished work. Equal work gives equal manifests.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
-    /// Counts the formats of this file.
+    /// Number of the format of this file.
     format: u32,
     /// The version of the program that made the results.
     pub version: String,
     pub work: Work,
     /// The files, sorted by name.
     pub files: Vec<FileRecord>,
-    /// SHA-256 of all the above.
+    /// SHA-256 of all fields above.
     sha256: String,
 }
 
@@ -26,14 +26,14 @@ pub struct Manifest {
 pub struct FileRecord {
     /// The path below the directory, with `/` between folders.
     pub name: String,
-    /// SHA-256 of its content; `None` for what differs between equal runs, such as timings.
+    /// SHA-256 of its content; `None` for a file that differs between equal runs, such as timings.
     pub sha256: Option<String>,
 }
 
 const FORMAT: u32 = 1;
 
 impl Manifest {
-    /// The manifest of results that a version of the program has made; that is this one where none is named.
+    /// The manifest of results; `made_by` is the version of the program that made them, by default this version.
     pub(super) fn new(made_by: Option<&str>, work: Work, mut files: Vec<FileRecord>) -> Manifest {
         let version = made_by.unwrap_or(version()).to_owned();
         files.sort_by(|a, b| a.name.cmp(&b.name));
@@ -42,15 +42,15 @@ impl Manifest {
         manifest
     }
 
-    /// The record of a file; `None` where it is no file of the directory.
+    /// The record of a file; `None` if the file is not in the manifest.
     pub fn file(&self, name: &str) -> Option<&FileRecord> {
         self.files.iter().find(|file| file.name == name)
     }
 
-    /// Over everything but the hash itself.
+    /// Hash of everything except the hash itself.
     fn own_hash(&self) -> String {
         let bare = Manifest { sha256: String::new(), ..self.clone() };
-        sha256(&serde_json::to_vec(&bare).unwrap_or_default()) // texts and numbers always have a form
+        sha256(&serde_json::to_vec(&bare).unwrap_or_default()) // texts and numbers can always be written
     }
 
     pub(super) fn bytes(&self) -> Vec<u8> {
@@ -59,7 +59,7 @@ impl Manifest {
         bytes
     }
 
-    /// The manifest in a file; `None` where there is no such file.
+    /// The manifest in a file; `None` if the file does not exist.
     pub(super) fn read(path: &Path) -> Result<Option<Manifest>, StoreError> {
         let bytes = match fs::read(path) {
             Ok(bytes) => bytes,
@@ -68,31 +68,34 @@ impl Manifest {
         };
         let manifest: Manifest = serde_json::from_slice(&bytes).map_err(|cause| StoreError::damaged(path, cause))?;
         if manifest.sha256 != manifest.own_hash() {
-            return Err(StoreError::damaged(path, "it is damaged: its checksum is not that of its content"));
+            return Err(StoreError::damaged(path, "the file is damaged: its checksum does not match its content"));
         }
         if manifest.format != FORMAT {
             let (expected, found) = (FORMAT.to_string(), manifest.format.to_string());
             return Err(StoreError::OtherVersion { path: path.to_owned(), expected, found });
         }
         if let Some(file) = manifest.files.iter().find(|file| !is_inside(&file.name)) {
-            return Err(StoreError::damaged(path, format!("it names `{}`, which is not below it", file.name)));
+            return Err(StoreError::damaged(
+                path,
+                format!("the manifest names `{}`, which is not in the directory", file.name),
+            ));
         }
         Ok(Some(manifest))
     }
 }
 
-/// Whether a name stays below its directory and out of the store's own files.
+/// Whether a name is inside the directory and not a file of the store itself.
 pub(super) fn is_inside(name: &str) -> bool {
     let plain = |part: &str| !part.is_empty() && !part.starts_with('.') && !part.contains(['\\', ':']);
     name.split('/').all(plain) && name != "manifest.json"
 }
 
 impl FileRecord {
-    /// Whether `bytes` are the file's; `path` is for the error.
+    /// Checks that `bytes` are the content of the file; `path` is for the error.
     pub(super) fn verify(&self, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
         match &self.sha256 {
             Some(hash) if *hash != sha256(bytes) => {
-                Err(StoreError::damaged(path, "it is damaged: its content is not what the manifest says"))
+                Err(StoreError::damaged(path, "the file is damaged: its content does not match the manifest"))
             }
             _ => Ok(()),
         }

@@ -1,12 +1,13 @@
-//! The store: what a program keeps on a disk comes back whole, or is refused by name.
+//! The store: data that the program writes to a disk is read back complete, or refused with an error that names the
+//! file.
 //!
-//! A [`Directory`] of results is a transaction: its files are staged, and [`Directory::commit`] puts all of them in place at once, so
-//! that a kill at any instant leaves the old results or the new ones. While work is under way it keeps a checkpoint and pieces
-//! beside it, and a lock that keeps others out. [`Finished`] reads such a directory and checks every file; [`Unfinished`] reads
-//! what work under way has kept so far, and adds pieces to it from any number of processes. [`Beds`] are packed beds
-//! by the hash of their recipe.
+//! A [`Directory`] of results is a transaction: its files are staged, and [`Directory::commit`] puts all of them in
+//! place atomically. A kill at any time leaves either the old or the new results. Work in progress has a checkpoint,
+//! pieces beside it, and a lock that excludes other processes. [`Finished`] reads such a directory and checks every
+//! file. [`Unfinished`] reads the stored data of work in progress, and any number of processes can add pieces to it.
+//! [`Beds`] are packed beds by the hash of their recipe.
 //!
-//! The store knows bytes, hashes and recipes of solvers, and no scene.
+//! The store handles bytes, hashes and recipes of solvers; it does not know scenes.
 
 mod atomic;
 mod beds;
@@ -39,10 +40,10 @@ pub use unfinished::{Piece, Unfinished};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-/// What a directory is of: a kind of work, and the scene that it is done for.
+/// The work of a directory: the kind of work, and its scene.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
-    /// What a person calls it: `run`, or "study \`pads\`".
+    /// Name for the user: `run`, or "study \`pads\`".
     pub name: String,
     pub scene_sha256: String,
 }

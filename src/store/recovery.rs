@@ -1,12 +1,13 @@
-//! From any state in which a kill can leave a directory to one that has a name: the log that is done again.
+//! Recovery of a directory after a kill in any state, by repeating the logged commit.
 //!
-//! 1. Until `intent.json` has its name, results are the old ones; what is staged is thrown away.
-//! 2. From then on the new results are certain. What is left to do can be read off the disk, and doing it twice is doing it once:
-//!    each staged file is renamed to its place; files that only the old manifest names go; then the unfinished work and the staging
-//!    folder go. The old manifest stays until all of this is done, because it says which files are old.
-//! 3. `intent.json` is renamed to `manifest.json`: there is no intent any more, and the results are the new ones.
+//! 1. Before `intent.json` exists, the old results are valid; staged files are deleted.
+//! 2. After that the new results are certain. The remaining steps can be read from the disk and may be repeated:
+//!    each staged file is renamed to its place; files that are only in the old manifest are removed; then the unfinished
+//!    work and the staging folder are removed. The old manifest stays until all of this is done, because it lists the
+//!    old files.
+//! 3. `intent.json` is renamed to `manifest.json`: there is no intent any more, and the new results are valid.
 //!
-//! So a directory without an intent is in order, and one with an intent is brought to order by [`finish`].
+//! A directory without an intent is complete; a directory with an intent is completed by [`finish`].
 
 use super::StoreError;
 use super::disk::Disk;
@@ -15,7 +16,7 @@ use super::manifest::Manifest;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-/// Brings a directory to order. Only for the holder of its lock.
+/// Recovers a directory. Only for the holder of its lock.
 pub(super) fn recover(disk: &impl Disk, layout: &Layout) -> Result<(), StoreError> {
     match Manifest::read(&layout.intent())? {
         Some(intent) => finish(disk, layout, &intent),
@@ -23,7 +24,7 @@ pub(super) fn recover(disk: &impl Disk, layout: &Layout) -> Result<(), StoreErro
     }
 }
 
-/// Puts what is staged in its place, from wherever an earlier attempt has got to.
+/// Puts the staged files in place, continuing an earlier attempt.
 pub(super) fn finish(disk: &impl Disk, layout: &Layout, intent: &Manifest) -> Result<(), StoreError> {
     let mut folders = BTreeSet::from([layout.root.clone()]);
     for file in &intent.files {
@@ -33,7 +34,7 @@ pub(super) fn finish(disk: &impl Disk, layout: &Layout, intent: &Manifest) -> Re
             disk.create_folder(&folder).map_err(|cause| StoreError::io(&folder, "create", cause))?;
             disk.rename(&staged, &place).map_err(|cause| StoreError::io(&place, "write", cause))?;
         } else if !place.exists() {
-            return Err(StoreError::damaged(&place, "it is gone, and the manifest names it"));
+            return Err(StoreError::damaged(&place, "the file is missing, but the manifest names it"));
         }
         folders.insert(folder);
     }
@@ -47,9 +48,9 @@ pub(super) fn finish(disk: &impl Disk, layout: &Layout, intent: &Manifest) -> Re
         .map_err(|cause| StoreError::io(&layout.manifest(), "write", cause))
 }
 
-/// Removes what the old manifest names and the new one does not; files that no manifest names are somebody else's.
+/// Removes files that are in the old manifest but not in the new one; files in no manifest belong to others and stay.
 fn remove_old(disk: &impl Disk, layout: &Layout, intent: &Manifest) -> Result<(), StoreError> {
-    // of a damaged manifest nothing is known: its files stay, and no reader looks at them
+    // the files of a damaged manifest are not known: they stay, and no reader uses them
     let Ok(Some(old)) = Manifest::read(&layout.manifest()) else { return Ok(()) };
     for file in old.files.iter().filter(|file| intent.file(&file.name).is_none()) {
         let path = layout.root.join(&file.name);
@@ -58,11 +59,11 @@ fn remove_old(disk: &impl Disk, layout: &Layout, intent: &Manifest) -> Result<()
     Ok(())
 }
 
-/// Removes unfinished work. The checkpoint goes first: pieces without one are whole by themselves.
+/// Removes unfinished work. The checkpoint is removed first: pieces are complete without a checkpoint.
 pub(super) fn discard(disk: &impl Disk, layout: &Layout) -> Result<(), StoreError> {
     let file = |path: PathBuf| disk.remove_file(&path).map_err(|cause| StoreError::io(&path, "remove", cause));
     file(layout.checkpoint())?;
-    // a kill leaves what was being written under its first name
+    // a kill can leave files under their temporary names
     for written in [layout.checkpoint(), layout.work(), layout.so_far(), layout.intent()] {
         file(part(&written))?;
     }
@@ -78,7 +79,7 @@ fn remove_staged(disk: &impl Disk, layout: &Layout) -> Result<(), StoreError> {
     disk.remove_folder(&staging).map_err(|cause| StoreError::io(&staging, "remove", cause))
 }
 
-/// Removes an intent that cannot be read, where everything is to be replaced.
+/// Removes an intent that cannot be read, if everything is to be replaced.
 pub(super) fn abandon(disk: &impl Disk, layout: &Layout) -> Result<(), StoreError> {
     let intent = layout.intent();
     disk.remove_file(&intent).map_err(|cause| StoreError::io(&intent, "remove", cause))?;

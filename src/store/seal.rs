@@ -1,4 +1,4 @@
-//! Sealed files: bytes with a label and a checksum over both, so that what comes back is what was kept, or an error.
+//! Sealed files: bytes with a label and a checksum over both, so that reading gives the stored bytes or an error.
 //!
 //! ```text
 //! trackbed 1 <SHA-256 of all that follows this line>
@@ -11,10 +11,10 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// First words of a sealed file; the number counts its formats.
+/// First words of a sealed file; the number is the number of the format.
 const MAGIC: &str = "trackbed 1 ";
 
-/// What a sealed file is of: a kind of thing, and the key that names the one that is meant.
+/// Label of a sealed file: its kind, and the key of the stored item.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Seal<'a> {
     pub kind: &'a str,
@@ -32,18 +32,21 @@ impl Seal<'_> {
     /// The bytes of a sealed file.
     pub fn close(&self, payload: &[u8]) -> Vec<u8> {
         let label = Label { kind: self.kind, version: version(), key: self.key };
-        // a label of three texts always has a form
+        // a label of three texts can always be written
         let mut sealed = serde_json::to_vec(&label).unwrap_or_default();
         sealed.push(b'\n');
         sealed.extend_from_slice(payload);
         [format!("{MAGIC}{}\n", sha256(&sealed)).as_bytes(), &sealed].concat()
     }
 
-    /// What a sealed file holds. Fails where it is damaged, or of another kind, version or key; `path` is for the error.
+    /// Content of a sealed file. Fails if it is damaged, or if it has another kind, version or key; `path` is for the
+    /// error.
     pub fn open<'b>(&self, path: &Path, bytes: &'b [u8]) -> Result<&'b [u8], StoreError> {
-        let broken = || StoreError::damaged(path, "it is damaged: its checksum is not that of its content");
+        let broken = || StoreError::damaged(path, "the file is damaged: its checksum does not match its content");
         let rest = bytes.strip_prefix(MAGIC.as_bytes());
-        let rest = rest.ok_or_else(|| StoreError::damaged(path, "it does not begin as this program begins it"))?;
+        let rest = rest.ok_or_else(|| {
+            StoreError::damaged(path, "the file does not start with the header that this program writes")
+        })?;
         let (hash, sealed) = line(rest).ok_or_else(broken)?;
         if sha256(sealed).as_bytes() != hash {
             return Err(broken());
@@ -52,7 +55,7 @@ impl Seal<'_> {
         let label: Label<'_> = serde_json::from_slice(label).map_err(|cause| StoreError::damaged(path, cause))?;
         let found = || path.to_owned();
         if label.kind != self.kind {
-            return Err(StoreError::damaged(path, format!("it holds a {}, not a {}", label.kind, self.kind)));
+            return Err(StoreError::damaged(path, format!("the file holds a {}, not a {}", label.kind, self.kind)));
         }
         if label.version != version() {
             let (expected, other) = (version().to_owned(), label.version.to_owned());
@@ -65,12 +68,12 @@ impl Seal<'_> {
         Ok(payload)
     }
 
-    /// A sealed file of a value as JSON. Fails where a number is not finite: JSON has no word for it, and it would only be missed
-    /// when the value is read again.
+    /// A sealed file of a value as JSON. Fails if a number is not finite, because JSON cannot represent it and reading
+    /// the value would fail.
     pub fn close_json<T: Serialize + DeserializeOwned>(&self, path: &Path, value: &T) -> Result<Vec<u8>, StoreError> {
         let payload = serde_json::to_vec(value).map_err(|cause| StoreError::unwritable(path, cause))?;
         serde_json::from_slice::<T>(&payload).map_err(|cause| {
-            let why = format!("the state would not come back: a number is not finite ({cause})");
+            let why = format!("the state could not be read back: a number is not finite ({cause})");
             StoreError::unwritable(path, why)
         })?;
         Ok(self.close(&payload))
@@ -82,7 +85,7 @@ impl Seal<'_> {
     }
 }
 
-/// What stands before the first end of a line, and after it.
+/// The bytes before and after the first line break.
 fn line(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let end = bytes.iter().position(|byte| *byte == b'\n')?;
     Some((&bytes[..end], &bytes[end + 1..]))

@@ -1,10 +1,9 @@
-//! Work that several processes do in one directory, on one machine or on many that share a disk. One holds the
-//! directory; the others add pieces to its work. Which of them computes a piece does not matter: equal pieces have
-//! equal bytes.
+//! Work that several processes do in one directory, on one machine or on several machines with a shared disk. One
+//! process holds the directory; the others add pieces to its work. A piece has the same bytes from every process.
 //!
-//! Two locks keep them apart. The claim of a piece says that somebody computes it now. The gate is held by all who
-//! add a piece, and alone by who begins or ends the work, so that no piece comes late into results that are in place.
-//! On a disk that knows no locks a piece may be computed twice.
+//! There are two locks. The claim of a piece means that a process is computing it. The gate is a shared lock for
+//! processes that add a piece, and an exclusive lock for the process that starts or ends the work, so that no piece is
+//! added after the end. On a disk without locks a piece may be computed twice.
 
 use super::lock::Lock;
 use super::seal::Seal;
@@ -22,16 +21,16 @@ pub struct Claim {
 }
 
 impl Unfinished {
-    /// Claims a piece; `None` where another process computes it.
+    /// Claims a piece; `None` if another process is computing it.
     pub fn claim(&self, key: &str) -> Result<Option<Claim>, StoreError> {
-        self.piece(key)?; // a key that is no name has been refused
+        self.piece(key)?; // refuses a key that is not a valid name
         let folder = self.layout.claims();
         fs::create_dir_all(&folder).map_err(|cause| StoreError::io(&folder, "create", cause))?;
         Ok(Lock::claim(&folder.join(key))?.map(|lock| Claim { _lock: lock }))
     }
 
-    /// Adds a piece to the work. Gives `false`, and keeps nothing, where the work has ended meanwhile or is another
-    /// one.
+    /// Adds a piece to the work. Returns `false`, and stores nothing, if the work has ended meanwhile or if the
+    /// directory has other work.
     pub fn add(&self, key: &str, bytes: &[u8]) -> Result<bool, StoreError> {
         let _gate = Lock::share(&self.layout.gate())?;
         let path = self.piece(key)?;
@@ -46,7 +45,7 @@ impl Unfinished {
         Ok(true)
     }
 
-    /// Keys of all pieces that are kept now.
+    /// Keys of all stored pieces.
     pub fn keys(&self) -> Result<BTreeSet<String>, StoreError> {
         let folder = self.layout.pieces();
         let entries = match fs::read_dir(&folder) {
@@ -58,7 +57,7 @@ impl Unfinished {
         Ok(names.filter(|name| !name.starts_with('.') && !name.ends_with(".part")).collect())
     }
 
-    /// The folder for what processes elsewhere print; it goes with the work.
+    /// The folder for the output of processes on other machines; removed with the work.
     pub fn logs(&self) -> Result<PathBuf, StoreError> {
         let folder = self.layout.logs();
         fs::create_dir_all(&folder).map_err(|cause| StoreError::io(&folder, "create", cause))?;

@@ -1,4 +1,4 @@
-//! A folder of values that can be made again, each found by its key: a file a value, sealed.
+//! A folder of values that can be computed again; each value is a sealed file, found by its key.
 
 use super::lock::Lock;
 use super::seal::Seal;
@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// Values of one kind in a folder, which is made with the first of them.
+/// Values of one kind in a folder, which is created with the first value.
 #[derive(Debug, Clone)]
 pub struct Shelf {
     folder: PathBuf,
@@ -18,7 +18,7 @@ pub struct Shelf {
 }
 
 impl Shelf {
-    /// The values of a kind, in one word, that are kept in a folder.
+    /// The values of a kind (one word) in a folder.
     pub fn new(folder: impl Into<PathBuf>, kind: &'static str) -> Shelf {
         Shelf { folder: folder.into(), kind }
     }
@@ -28,7 +28,7 @@ impl Shelf {
         &self.folder
     }
 
-    /// The value of a key; `None` where there is none, or one of another version. Fails where it is damaged.
+    /// The value of a key; `None` if there is no value of this version. Fails if it is damaged.
     pub fn get<T: DeserializeOwned>(&self, key: &str) -> Result<Option<T>, StoreError> {
         let path = self.path(key);
         let Some(bytes) = read(&path)? else { return Ok(None) };
@@ -38,14 +38,14 @@ impl Shelf {
         }
     }
 
-    /// Keeps a value, whole or not at all.
+    /// Stores a value atomically.
     pub fn put<T: Serialize + DeserializeOwned>(&self, key: &str, value: &T) -> Result<(), StoreError> {
         self.make()?;
         let path = self.path(key);
         write_atomically(&path, &self.seal(key).close_json(&path, value)?)
     }
 
-    /// Removes all but the newest values and the one of a key, whatever a clock says of its age.
+    /// Removes all values except the newest and the value of `key`, independent of its age.
     pub(super) fn keep_newest(&self, count: usize, key: &str) -> Result<(), StoreError> {
         let io = |cause| StoreError::io(&self.folder, "read", cause);
         let mut found: Vec<(SystemTime, PathBuf)> = Vec::new();
@@ -67,7 +67,7 @@ impl Shelf {
         self.folder.join(format!("{key}.{}", self.kind))
     }
 
-    /// Waits until nobody else, in this process or another, has the lock of a key.
+    /// Waits until no other thread or process has the lock of a key.
     pub(super) fn lock(&self, key: &str) -> Result<Lock, StoreError> {
         self.make()?;
         Lock::wait(&self.folder.join(format!("{key}.lock")))
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
     use crate::store::sha256;
 
-    /// What can happen to a file, and whether it is told as damage: a value of another version is none.
+    /// Changes of a file, and whether each is reported as damage: a value of another version is not damage.
     fn changed(whole: &[u8]) -> Vec<(&'static str, Vec<u8>, bool)> {
         let text = String::from_utf8(whole.to_vec()).unwrap();
         let (_, sealed) = text.split_once('\n').unwrap();

@@ -1,4 +1,4 @@
-//! Directories that are killed at every operation, files that change on the disk, and two who want the same.
+//! Kills at every operation of a directory, changed files on the disk, and two processes with the same directory.
 
 use super::*;
 use std::cell::Cell;
@@ -8,7 +8,7 @@ use std::io;
 use std::path::Path;
 use std::rc::Rc;
 
-/// A disk that dies at an operation, which it leaves half done.
+/// A disk that fails at an operation and leaves it incomplete.
 #[derive(Debug, Clone)]
 struct Mortal {
     left: Rc<Cell<usize>>,
@@ -24,7 +24,7 @@ impl Mortal {
         Mortal::after(usize::MAX - 1)
     }
 
-    /// Does an operation, or a half of it as the last.
+    /// Does an operation; the last operation is done only in part.
     fn step(&self, whole: impl FnOnce() -> io::Result<()>, half: impl FnOnce()) -> io::Result<()> {
         match self.left.get() {
             usize::MAX => return Err(io::Error::other("dead")),
@@ -73,7 +73,7 @@ fn work(scene: &str) -> Work {
     Work { name: "run".to_owned(), scene_sha256: scene.to_owned() }
 }
 
-/// Files of two results: one name in both with other content, one in each alone, one in a folder.
+/// Files of two results: one name in both with different content, one name in each alone, one file in a folder.
 const OLD: [(&str, &str); 3] = [("summary.json", "old"), ("trains.csv", "old trains"), ("states/1.vtp", "old state")];
 const NEW: [(&str, &str); 3] = [("summary.json", "new"), ("laws.csv", "new laws"), ("states/2.vtp", "new state")];
 
@@ -85,7 +85,7 @@ fn write_all<D: Disk>(disk: D, path: &Path, scene: &str, mode: Mode, files: &[(&
     directory.commit().map(drop)
 }
 
-/// The results of a directory by name, after what a kill left is mended; checked against the manifest.
+/// The results of a directory by name, after recovery from a kill; checked against the manifest.
 fn results(path: &Path) -> Option<BTreeMap<String, String>> {
     // as a reader would, who finds nothing left to do then
     recovery::recover(&Mortal::immortal(), &layout::Layout { root: path.to_owned() }).unwrap();
@@ -94,7 +94,7 @@ fn results(path: &Path) -> Option<BTreeMap<String, String>> {
     Some(finished.manifest().files.iter().map(|file| (file.name.clone(), content(&file.name))).collect())
 }
 
-/// Every visible file below a directory but the manifest.
+/// Every visible file below a directory, except the manifest.
 fn visible(root: &Path) -> BTreeMap<String, String> {
     fn walk(root: &Path, folder: &Path, found: &mut BTreeMap<String, String>) {
         for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
@@ -318,7 +318,7 @@ fn work_under_way_is_read_while_its_lock_is_held_and_its_page_goes_with_it() {
     assert_eq!(unfinished.read_checkpoint::<(f64, Piece)>().unwrap(), Some((1.5, piece.clone())));
     assert_eq!(unfinished.read_piece(&piece).unwrap(), b"first");
     directory.keep("rows", b"other").unwrap();
-    assert!(unfinished.read_piece(&piece).unwrap_err().to_string().contains("it is not what the checkpoint names"));
+    assert!(unfinished.read_piece(&piece).unwrap_err().to_string().contains("the file does not match the checkpoint"));
 
     let page = unfinished.show(b"so far").unwrap();
     assert_eq!(fs::read(&page).unwrap(), b"so far");

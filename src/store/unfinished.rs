@@ -1,4 +1,4 @@
-//! Work that is under way in a directory: what its holder keeps there, and what others read of it meanwhile.
+//! Work in progress in a directory: data that its holder stores there, and that other processes can read.
 
 use super::layout::Layout;
 use super::manifest::is_inside;
@@ -10,17 +10,17 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// Seal of the file that says whose work is under way; it is this very file that names the scene.
+/// Seal of the file that names the work in progress and its scene; its key is therefore empty.
 pub(super) const WORK: Seal<'_> = Seal { kind: "work", key: "" };
 
-/// Data that has been kept beside a checkpoint. A checkpoint that holds this names exactly the bytes that were kept.
+/// Reference to data stored beside a checkpoint; the hash identifies exactly the stored bytes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Piece {
     pub key: String,
     pub sha256: String,
 }
 
-/// Work under way. It may be read while it goes on, without its lock: every file of it is replaced at once.
+/// Work in progress. It may be read without its lock while it runs, because every file is replaced atomically.
 #[derive(Debug, Clone)]
 pub struct Unfinished {
     pub(super) layout: Layout,
@@ -28,7 +28,7 @@ pub struct Unfinished {
 }
 
 impl Unfinished {
-    /// The work under way in a directory; `None` where none has kept anything.
+    /// The work in progress in a directory; `None` if nothing is stored.
     pub fn open(path: &Path) -> Result<Option<Unfinished>, StoreError> {
         let layout = Layout { root: path.to_owned() };
         if !layout.is_unfinished() {
@@ -38,10 +38,10 @@ impl Unfinished {
         Ok(Some(Unfinished { layout, work }))
     }
 
-    /// Whose work is under way.
+    /// The name and scene of the work in progress.
     pub(super) fn work_in(layout: &Layout) -> Result<Work, StoreError> {
         let path = layout.work();
-        let sealed = read(&path)?.ok_or_else(|| StoreError::damaged(&path, "it is gone"))?;
+        let sealed = read(&path)?.ok_or_else(|| StoreError::damaged(&path, "the file is missing"))?;
         WORK.open_json(&path, &sealed)
     }
 
@@ -54,29 +54,32 @@ impl Unfinished {
         &self.layout.root
     }
 
-    /// The state of the last checkpoint; `None` where there is none. Fails where it is damaged, or of another scene or version.
+    /// The state of the last checkpoint; `None` if there is none. Fails if it is damaged, or if it has another scene or
+    /// version.
     pub fn read_checkpoint<T: DeserializeOwned>(&self) -> Result<Option<T>, StoreError> {
         let path = self.layout.checkpoint();
         read(&path)?.map(|bytes| self.checkpoint_seal().open_json(&path, &bytes)).transpose()
     }
 
-    /// Data that was kept under a key; `None` where there is none. Fails where it is damaged or of another version.
+    /// Data stored under a key; `None` if there is none. Fails if it is damaged or has another version.
     pub fn kept(&self, key: &str) -> Result<Option<Vec<u8>>, StoreError> {
         let path = self.piece(key)?;
         let Some(bytes) = read(&path)? else { return Ok(None) };
         Ok(Some(Seal { kind: "piece", key: &self.piece_key(key) }.open(&path, &bytes)?.to_vec()))
     }
 
-    /// The very bytes of a piece that was kept. Fails where they are missing or others.
+    /// The bytes of a stored piece. Fails if they are missing or different.
     pub fn read_piece(&self, piece: &Piece) -> Result<Vec<u8>, StoreError> {
         match self.kept(&piece.key)? {
             Some(bytes) if sha256(&bytes) == piece.sha256 => Ok(bytes),
-            Some(_) => Err(StoreError::damaged(&self.piece(&piece.key)?, "it is not what the checkpoint names")),
-            None => Err(StoreError::damaged(&self.piece(&piece.key)?, "it is gone, and the checkpoint names it")),
+            Some(_) => Err(StoreError::damaged(&self.piece(&piece.key)?, "the file does not match the checkpoint")),
+            None => {
+                Err(StoreError::damaged(&self.piece(&piece.key)?, "the file is missing, but the checkpoint names it"))
+            }
         }
     }
 
-    /// Writes the page that shows the work so far, which goes as the work ends. Gives its place.
+    /// Writes the page of the work so far, which is removed at the end of the work. Returns its path.
     pub fn show(&self, page: &[u8]) -> Result<PathBuf, StoreError> {
         let path = self.layout.so_far();
         write_atomically(&path, page)?;
@@ -95,13 +98,13 @@ impl Unfinished {
     pub(super) fn piece(&self, key: &str) -> Result<PathBuf, StoreError> {
         let path = self.layout.pieces().join(key);
         if key.contains('/') || !is_inside(key) {
-            return Err(StoreError::unwritable(&path, "it has no name of a piece"));
+            return Err(StoreError::unwritable(&path, "the name is not valid for a piece"));
         }
         Ok(path)
     }
 }
 
-/// The bytes of a file; `None` where there is none.
+/// The bytes of a file; `None` if it does not exist.
 pub(super) fn read(path: &Path) -> Result<Option<Vec<u8>>, StoreError> {
     match fs::read(path) {
         Ok(bytes) => Ok(Some(bytes)),

@@ -50,7 +50,7 @@ fn a_damaged_state_is_named_and_not_gone_on_from() {
             copied(&place.path("cut"), &place.path("damaged"));
             fs::write(place.path("damaged/.trackbed").join(name), bytes).unwrap();
             let output = place.run("damaged", &["--resume"]);
-            refused(&output, &["E0802", name, "run it anew with `--force`"]);
+            refused(&output, &["E0802", name, "run again with `--force`"]);
             assert!(!in_one_line(&output).contains("panicked"), "{name}: {how}");
         }
         copied(&place.path("cut"), &place.path("damaged"));

@@ -6,8 +6,8 @@ use std::path::Path;
 use std::process::{Command, Output};
 use std::time::{Duration, SystemTime};
 
-/// A script in which `$T` is the program and `$D` an empty disk of so many kB that only the script sees; `None`, with a word, where this
-/// machine gives nobody a disk of their own.
+/// A script in which `$T` is the program and `$D` an empty disk of so many kB that only the script sees; `None`, with a
+/// word, where this machine gives nobody a disk of their own.
 fn with_disk(folder: &Path, kilobytes: u32, script: &str) -> Option<Output> {
     let disk = folder.join("disk");
     fs::create_dir_all(&disk).unwrap();
@@ -41,7 +41,7 @@ fn a_full_disk_is_told_and_loses_nothing() {
         cp -r \"$D/out\" \"$F/after\"
         exit $code";
     let Some(output) = with_disk(&place.path(""), 4000, script) else { return };
-    refused(&output, &["E0802", "cannot write", "No space left on device", "make room in this one"]);
+    refused(&output, &["E0802", "cannot write", "No space left on device", "make space in this one"]);
     same_results(&place.path("before"), &place.path("full"));
     fs::copy(place.path("other.track"), place.path("scene.track")).unwrap();
     place.finish("whole", &[]);

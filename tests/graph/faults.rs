@@ -74,7 +74,7 @@ fn what_is_missing_or_doubled_is_named() {
     let doubled = fault(&by_hand(nodes, edges));
     let from = vec!["rain".to_owned(), "sun".to_owned()];
     assert_eq!(doubled, Fault::Doubled { node: "slope".into(), quantity: SUCTION, from });
-    assert_eq!(doubled.to_string(), "node `slope` takes `suction` once, and rain and sun bring it");
+    assert_eq!(doubled.to_string(), "node `slope` takes `suction` from one node, but rain and sun give it");
 
     let two = fault(&by_hand(vec![weather("rain"), weather("rain")], vec![]));
     assert_eq!(two, Fault::TwoNodes { name: "rain".into() });

@@ -1,5 +1,5 @@
-//! Tiers and passes of another program: a ground that it brings along is proposed beside those of this crate, and a pass of its own
-//! changes the plan and says why.
+//! Tiers and passes of another program: a ground that it brings along is proposed beside those of this crate, and a
+//! pass of its own changes the plan and says why.
 
 use super::scene::{SCENE, Told};
 use super::sinking::{EACH, Sinking, Witness, executor};
@@ -100,7 +100,7 @@ fn the_cheapest_tier_is_taken_whoever_brings_it() {
     assert!(told.blocks.last().unwrap().settlement.contains(&(6.0 * EACH)));
 
     let dear = text(&compiled(&Planner::default().with_tier(Box::new(SinkingTier(1e9))), &[]));
-    assert!(dear.contains("  not sinking: it costs more; off by about 50 % (a guess), about "), "{dear}");
+    assert!(dear.contains("  not sinking: it costs more; error about 50 % (a guess), about "), "{dear}");
     // a scene that asks for a tier gets that one, at any price
     let asked = text(&compiled(&cheap, &["solve.substructure=law"]));
     assert!(asked.contains("  not sinking: the scene asks for another tier"), "{asked}");

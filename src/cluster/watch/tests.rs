@@ -1,4 +1,4 @@
-//! A scheduler of a few lines in place of a cluster: what is lost is given again, what is cancelled is not.
+//! A simple scheduler instead of a cluster: lost pieces are submitted again, cancelled pieces are not.
 
 use super::*;
 use crate::cluster::scheduler::States;
@@ -6,7 +6,7 @@ use std::cell::RefCell;
 
 const MIB: u64 = 1 << 20;
 
-/// Work whose done pieces a test says.
+/// Work whose finished pieces are set by a test.
 struct Pieces {
     needs: Vec<Need>,
     done: RefCell<BTreeSet<usize>>,
@@ -49,7 +49,7 @@ impl Work for Pieces {
     }
 }
 
-/// Jobs are called by their number; a test says what becomes of tasks.
+/// Jobs are named by their number; a test sets the states of tasks.
 #[derive(Default)]
 struct Queue {
     arrays: RefCell<Vec<Array>>,
@@ -80,7 +80,7 @@ impl Scheduler for Queue {
     }
 }
 
-/// Looks twice: what has ended is believed at the second look.
+/// Looks twice: the end of a task counts at the second look.
 fn look_twice(watch: &mut Watch<'_>) -> Result<Seen, ClusterError> {
     watch.look()?;
     watch.look()
@@ -140,8 +140,8 @@ fn what_fails_again_and_again_is_given_up_when_the_rest_is_done() {
     assert_eq!((seen.missing, seen.running), (2, 1), "another is still under way");
     work.finish(&[1]);
     let error = watch.look().unwrap_err();
-    assert_eq!(error.to_string(), "1 run is missing: the last attempt took longer than it had asked for");
-    // who goes on has mended something
+    assert_eq!(error.to_string(), "1 run is missing: the last attempt exceeded its time limit");
+    // attempts are counted again after a restart
     let mut watch = Watch::new(&work, &queue, work.kept.borrow().clone());
     watch.submit().unwrap();
     assert_eq!(look_twice(&mut watch).unwrap().again, [(0, Ending::TimedOut)]);

@@ -1,7 +1,7 @@
 //! Tier `cells`: a periodic cell of grains for each distinct sleeper.
 //!
-//! Two sleepers are alike where they are built alike, lie on the same layers and settle by the law by about as much. One of them answers
-//! for all.
+//! Two sleepers are alike if they are built alike, lie on the same layers and settle by about the same amount under the
+//! law. One cell gives the results of all alike sleepers.
 
 use super::grains::{ADDED, DAMPING_TIME, READS, headway, standing, train_by_train};
 use super::rig::cost::{PassingCells, cells_under_track};
@@ -24,14 +24,14 @@ const CELLS: Reads = Reads {
     acts_where: "where sleepers stand on cells of grains: `substructure = cells`",
 };
 
-/// Modulus of grains where only the soil below them is asked for, Pa.
+/// Young's modulus of grains for the stiffness of the soil below them alone, Pa.
 const UNYIELDING: f64 = 1e15;
-/// Length of track beside a transition in which each sleeper is distinct where no law can tell, m.
+/// Length of track beside a transition in which each sleeper has its own cell if no law runs, m.
 const NEAR: f64 = 10.0;
 
-/// Length of rail over which a wheel is felt, m: three times that in which its deflection fades.
+/// Length of rail over which a wheel acts on seats, m: three decay lengths of the deflection.
 const REACH: f64 = 6.0;
-/// Share of the range of a group in which settlements are as good as its median.
+/// Distance from the median / range of a group, within which a settlement counts as the median.
 const NEARLY: f64 = 0.1;
 
 impl Tier for Cells {
@@ -49,15 +49,15 @@ impl Tier for Cells {
             return Err("there are no rails".into());
         }
         let (Some(Loading::Traffic(_)), Some(blocks)) = (&scenario.loading, &draft.blocks) else {
-            return Err("no train runs, and cells settle by trains".into());
+            return Err("no train runs, and cells settle only under trains".into());
         };
-        // hours of grains, and clumps, are for who asks for them by name
+        // grains take hours and clumps take time to make: only for scenes that ask for them by name
         let asked = scenario.solve.grains.tier.has_grains();
         let found = if asked { beds(scenario, BedUse::Track) } else { beds_of_spheres(scenario, BedUse::Track) };
         let (beds, mut refusals): (_, Vec<Diagnostic>) = match found {
             Ok(beds) if beds.is_empty() => return Err("no section has a layer of grains".into()),
             Ok(beds) => (beds, Vec::new()),
-            // what cannot be packed stands against a run only, as E0604 does
+            // a bed that cannot be packed is only a reason against the run, as with E0604
             Err(refusals) => {
                 (Vec::new(), refusals.into_iter().map(|refusal| refusal.severity(Severity::Warning)).collect())
             }
@@ -106,14 +106,14 @@ impl Tier for Cells {
             cost,
             what,
             why: "the scene asks for grains".into(),
-            error: ExpectedError { share: None, evidence: "no rail joins the cells".into() },
+            error: ExpectedError { share: None, evidence: "the rail does not connect the cells".into() },
             runs: asked && refusals.is_empty(),
             refusals,
         })
     }
 }
 
-/// The cells, and for every seat the one that answers for it.
+/// The cells, and for every seat the index of its cell.
 fn cells(draft: &Draft<'_>, beds: &[BedPlan]) -> (Vec<CellPlan>, Vec<Option<usize>>) {
     let scenario = draft.scenario;
     let mut groups: Vec<(CellPlan, Vec<usize>)> = Vec::new();
@@ -150,11 +150,12 @@ fn is_alike(a: &CellPlan, b: &CellPlan) -> bool {
     anywhere(a) == anywhere(b)
 }
 
-/// Seats in groups that settle by the law by about as much, each with this settlement, growing.
+/// Groups of seats that settle by about the same amount under the law, each seat with its settlement, in ascending
+/// order.
 fn settling_alike(draft: &Draft<'_>, seats: Vec<usize>) -> Vec<Vec<(f64, usize)>> {
     let scenario = draft.scenario;
     let by_law = draft.by_law.filter(|settlement| settlement.len() == scenario.track.seats.len());
-    // where no law tells, each sleeper beside a transition counts as far away as it is
+    // without a law the distance from the transition takes the place of the settlement
     let beside = |seat: usize| {
         let away = |x: f64| (scenario.track.seats[seat].x - x).abs();
         scenario.track.transitions.iter().map(|t| away(t.x)).fold(NEAR, f64::min)
@@ -167,7 +168,8 @@ fn settling_alike(draft: &Draft<'_>, seats: Vec<usize>) -> Vec<Vec<(f64, usize)>
     seats_alike(seats.into_iter().map(|seat| (measure(seat), seat)).collect(), width)
 }
 
-/// The seat that answers for a group: of those that every wheel passes and that settle as its median, nearly, the one in the middle.
+/// The seat whose cell is used for a group: the middle one of the seats that every wheel passes and whose settlement is
+/// near the median.
 fn typical(draft: &Draft<'_>, group: &[(f64, usize)]) -> usize {
     let passed: Vec<(f64, usize)> =
         group.iter().filter(|(_, seat)| every_wheel_passes(draft, *seat)).copied().collect();
@@ -180,14 +182,14 @@ fn typical(draft: &Draft<'_>, group: &[(f64, usize)]) -> usize {
     near[near.len() / 2]
 }
 
-/// Whether every wheel comes from far before a seat and runs on far behind it.
+/// Whether every wheel starts far before a seat and stops far behind it.
 fn every_wheel_passes(draft: &Draft<'_>, seat: usize) -> bool {
     let (Some(passage), Some(blocks)) = (draft.passages.first(), &draft.blocks) else { return true };
     let away = blocks.kind(0).0.wheel_base() + REACH;
     (passage.left + away..=passage.right - away).contains(&draft.scenario.track.seats[seat].x)
 }
 
-/// What the cell of a seat takes from the track.
+/// Data that the cell of a seat takes from the track.
 fn on_cell(draft: &Draft<'_>, seat: usize) -> SeatOnCell {
     let scenario = draft.scenario;
     SeatOnCell {
@@ -197,7 +199,7 @@ fn on_cell(draft: &Draft<'_>, seat: usize) -> SeatOnCell {
     }
 }
 
-/// A cell with the sleeper of a seat in its middle; `None` for a seat without grains below.
+/// A cell with the sleeper of a seat in its middle; `None` for a seat without grains.
 fn plan(scenario: &Scenario, beds: &[BedPlan], seat: usize) -> Option<CellPlan> {
     let track = &scenario.track;
     let here = track.seats.get(seat).filter(|seat| seat.is_ballasted())?;
@@ -225,7 +227,8 @@ fn plan(scenario: &Scenario, beds: &[BedPlan], seat: usize) -> Option<CellPlan> 
     })
 }
 
-/// The seats of the bays of a cell around one in its middle. Where the section ends the other neighbour stands in.
+/// The seats of the bays of a cell around its middle seat. At the end of the section the other neighbour is used
+/// instead.
 fn around(scenario: &Scenario, seat: usize, copies: u32) -> Vec<usize> {
     let seats = &scenario.track.seats;
     let section = seats[seat].section;
@@ -242,7 +245,7 @@ fn around(scenario: &Scenario, seat: usize, copies: u32) -> Vec<usize> {
     }
 }
 
-/// Stiffness of the soil under a seat, N/m, by the stress cone: what the layers of grains above do not give way of; `None` without soil.
+/// Stiffness of the soil alone under a seat, N/m, by the stress cone; `None` without soil.
 fn soil(scenario: &Scenario, seat: usize) -> Option<f64> {
     let track = &scenario.track;
     let here = &track.seats[seat];
@@ -262,7 +265,7 @@ fn soil(scenario: &Scenario, seat: usize) -> Option<f64> {
     carried.ok().map(|carried| carried.stiffness)
 }
 
-/// A layer of soil, or one of grains as if it did not give way.
+/// A layer of soil, or a layer of grains with an unyielding modulus.
 fn below_grains(layer: &Layer, x: f64) -> Option<foundation::Layer> {
     let (poisson_ratio, density, spread) = match (layer.granular(), layer.soil()) {
         (Some(grains), _) => (*grains.poisson_ratio, *grains.density, *grains.spread),

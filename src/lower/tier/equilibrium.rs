@@ -44,7 +44,7 @@ impl Tier for Equilibrium {
             cost,
             what: "no settlement".into(),
             why: "test loads act on a track at rest".into(),
-            error: ExpectedError { share: None, evidence: "as good as the stiffness of its supports".into() },
+            error: ExpectedError { share: None, evidence: "the error depends on the stiffness of the supports".into() },
             runs: true,
             refusals: unmoved(draft.scenario, loads),
         })
@@ -54,7 +54,7 @@ impl Tier for Equilibrium {
 /// A load on sleepers acts on the nearest one.
 fn point_loads(scenario: &Scenario, loads: &[StaticLoad]) -> Vec<PointLoad> {
     let nearest = |x: f64| nearest(&scenario.track, x).unwrap_or(0);
-    // loads on the rail first: sums are taken in that order
+    // loads on the rail first: the sums use this order
     let part = |load: &StaticLoad| match load.on {
         Target::Rail => LoadedPart::Rail { x: load.x },
         Target::Sleepers | Target::Bed => LoadedPart::Sleeper { seat: nearest(load.x) },
@@ -67,7 +67,7 @@ fn nearest(track: &Track, x: f64) -> Option<usize> {
     (0..track.seats.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
-/// Loads on sleepers that no spring carries: a fixed seat, or one on a slab.
+/// Diagnostics for loads on sleepers that no spring carries: on a rigid support, or on a slab.
 fn unmoved(scenario: &Scenario, loads: &[StaticLoad]) -> Vec<Diagnostic> {
     let track = &scenario.track;
     let refused = |load: &StaticLoad| {

@@ -1,4 +1,4 @@
-//! Tiers `zone` and `full`: grains under the sleepers of a track, under the bays that differ, or under all of the window.
+//! Tiers `zone` and `full`: grains under the bays of a track that differ from the far field, or under the whole window.
 
 use super::soil::{self, soil};
 use super::volumes::{self, volumes};
@@ -36,7 +36,7 @@ pub(super) const READS: Reads = Reads {
     ],
     acts_where: "where grains lie under a track: `substructure = cells`, `zone` or `full`",
 };
-/// Those of bays that are joined by a rail and by their soil.
+/// Fields of bays that rail and soil connect.
 const JOINED: Reads = Reads {
     fields: &[
         "solve.window",
@@ -49,7 +49,7 @@ const JOINED: Reads = Reads {
     acts_where: "where grains lie under bays of a track: `substructure = zone` or `full`",
 };
 
-/// What each of these tiers reads.
+/// Fields that both tiers read.
 const ALL: &[&Reads] = &[&track::READS, &bed::READS, &bed::VOLUMES, &READS, &JOINED];
 
 impl Tier for Zone {
@@ -62,7 +62,7 @@ impl Tier for Zone {
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
-        // a scene that does not ask for this tier has chosen no bays, but its law may tell them
+        // a scene that does not ask for this tier has no chosen bays, but its law may give them
         let seats = draft.scenario.track.seats.len();
         let windows = match draft.by_law.filter(|settlement| settlement.len() == seats) {
             _ if !draft.bays.is_empty() => draft.bays.clone(),
@@ -83,7 +83,7 @@ impl Tier for Full {
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
-        propose(draft, "grains under all of the window", wanted(draft.scenario))
+        propose(draft, "grains under the whole window", wanted(draft.scenario))
     }
 }
 
@@ -92,17 +92,17 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>) -> Result<Prop
     if !scenario.track.has_rails() {
         return Err("there are no rails".into());
     }
-    // the clumps of a scene that only might ask for grains are not worth their time
+    // no clumps for a scene that does not ask for grains: they take time to make
     let found = match scenario.solve.grains.tier.has_grains() {
         true => beds(scenario, BedUse::Track),
         false => beds_of_spheres(scenario, BedUse::Track),
     };
-    // hours of grains are for who asks for them by name
+    // grains take hours: only for scenes that ask for them by name
     let runs = scenario.solve.grains.tier.has_grains();
     let (beds, mut refusals): (_, Vec<Diagnostic>) = match found {
         Ok(beds) if beds.is_empty() => return Err("no section has a layer of grains".into()),
         Ok(beds) => (beds, Vec::new()),
-        // what cannot be packed stands against a run only, as E0604 does
+        // a bed that cannot be packed is only a reason against the run, as with E0604
         Err(refusals) => {
             (Vec::new(), refusals.into_iter().map(|refusal| refusal.severity(Severity::Warning)).collect())
         }
@@ -114,7 +114,7 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>) -> Result<Prop
     };
     let soil = soil(scenario);
     let stretches = if beds.is_empty() { Vec::new() } else { stretches(scenario, &beds, &windows) };
-    // a window reaches over the structure too, where no grains lie
+    // a window also covers the structure, which has no grains
     let length: f64 = match stretches.is_empty() {
         true => windows.iter().map(|[a, b]| b - a).sum(),
         false => extents(&beds, &stretches).iter().map(|[a, b]| b - a).sum(),
@@ -154,7 +154,8 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>) -> Result<Prop
     let ridden = scenario.solve.grains.monolithic;
     let mut track = Box::new(track::track(scenario));
     if ridden && track.rail_ends == RailEnds::Clamped {
-        // wheels that come over a held end fall from its level, and shake the first ten seats by three quarters of their load
+        // wheels that come over a clamped end drop from its level, and the load on the first ten seats oscillates by
+        // three quarters
         track.rail_ends = RailEnds::Absorbing;
     }
     let mut nodes = vec![
@@ -177,35 +178,36 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>) -> Result<Prop
     })
 }
 
-/// Blocks that grains decide nothing of: where the scene asks for an error, forces and settlement are exchanged after every train.
+/// Blocks for grains. If the scene asks for adaptive blocks, forces and settlement are exchanged after every train.
 pub(super) fn train_by_train(blocks: &Blocks) -> Blocks {
     let mut blocks = blocks.clone();
     if matches!(blocks.update, Update::Adaptive { .. }) {
         blocks.update = Update::Fixed { axles: blocks.train.axles() };
     }
-    // one passage of the plane track gives the forces of all trains of a block, and blocks are as long as they are asked to be
+    // one passage of the plane track gives the forces of all trains of a block, and no block is shortened
     blocks.cure = false;
     blocks
 }
 
-/// Share of the mass of a bed at rest that is added as inertia: under wheels contacts need a little more, and it stays below 2 %.
+/// Inertia that is added to a bed at rest / its mass: contacts under wheels need slightly more, and the sum stays below
+/// 2 %.
 pub(super) const ADDED: f64 = 0.0195;
-/// Damping of a support over its stiffness where grains are the support, s (methods 2; Nielsen 2008).
+/// Damping / stiffness of a support of grains, s (methods 2; Nielsen 2008).
 pub(super) const DAMPING_TIME: f64 = 1e-3;
 /// Length of a rail pad along the rail, m.
 const PAD_LENGTH: f64 = 0.15;
-/// Density of the rubber of an under sleeper pad whose lower half moves with the ballast, kg/m3.
+/// Density of the rubber of an under sleeper pad, kg/m3; its lower half moves with the ballast.
 const PAD_DENSITY: f64 = 1100.0;
 
-/// Distance between the fronts of trains that follow each other, m; `None` where they run one by one.
+/// Distance between the fronts of trains that follow each other, m; `None` if trains run one by one.
 pub(super) fn headway(scenario: &Scenario) -> Option<f64> {
     let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
     let lengths = traffic.train.vehicles.iter().map(|vehicle| vehicle.length.map(|length| *length));
     scenario.solve.grains.continuous.then(|| lengths.sum::<Option<f64>>()).flatten()
 }
 
-/// Cells over each window, as many as fit, one more as a buffer at each end that is no end of the section, and the sleepers that stand on
-/// them with half a bay before them.
+/// Cells in each window: as many as fit, and one more as a buffer at each end that is not an end of the section. Each
+/// sleeper on them has half a bay before it.
 fn stretches(scenario: &Scenario, beds: &[BedPlan], windows: &[[f64; 2]]) -> Vec<GrainStretch> {
     windows.iter().filter_map(|window| stretch(scenario, beds, *window, windows)).collect()
 }
@@ -236,8 +238,8 @@ fn stretch(scenario: &Scenario, beds: &[BedPlan], window: [f64; 2], windows: &[[
     Some(GrainStretch { bed, start: all[0], copies, sleepers, crib: crib::planned(section), glued })
 }
 
-/// Chainages between which as many cells fit as a window and a section have room for, one at least: they begin at the structure, and the
-/// other end gives way.
+/// Chainages of the ends of the whole cells that fit in a window and a section, at least one cell. The cells begin at
+/// the structure; the other end is adjusted.
 fn whole_cells(track: &Track, section: &Section, [left, right]: [f64; 2], cell: f64) -> [f64; 2] {
     let [start, end] = [left.max(section.start), right.min(section.end)];
     let length = ((end - start) / cell + TINY).floor().max(1.0) * cell;
@@ -252,13 +254,13 @@ fn extents(beds: &[BedPlan], stretches: &[GrainStretch]) -> Vec<[f64; 2]> {
     stretches.iter().map(|stretch| [stretch.start, end(stretch)]).collect()
 }
 
-/// Lengths closer than this are one, m.
+/// Lengths that differ by less than this count as equal, m.
 const TINY: f64 = 1e-6;
 
-/// Room that a sleeper needs before the end of the grains, m.
+/// Least distance between a sleeper and the end of the grains, m.
 const END: f64 = 0.2;
 
-/// A sleeper on grains that begin at a chainage, m.
+/// A sleeper on grains; `start` is the chainage at which the grains begin, m.
 pub(super) fn standing(scenario: &Scenario, number: usize, seat: &Seat, start: f64) -> Option<SleeperOnGrains> {
     let Foot::Sleeper { mass, .. } = &seat.foot else { return None };
     let SleeperBody { length, base_width, height, base_area, .. } = seat.sleeper?;
@@ -266,7 +268,7 @@ pub(super) fn standing(scenario: &Scenario, number: usize, seat: &Seat, start: f
     Some(SleeperOnGrains {
         seat: number,
         place: [seat.x - start, 0.0],
-        // what bears is as wide as the sleeper, and no longer than it
+        // the bearing area is as wide as the sleeper and at most as long
         size: [base_width, (base_area / base_width).min(length), height],
         mass: **mass,
         rail_mass: *rail.mass * scenario.track.bay(number),
@@ -290,5 +292,5 @@ fn pad(seat: &Seat) -> Option<UnderPad> {
     })
 }
 
-/// Thickness of a pad that a scene does not say, m.
+/// Least thickness of a pad, m.
 const THIN: f64 = 0.007;

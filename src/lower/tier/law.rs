@@ -37,7 +37,7 @@ impl Tier for SettlementLaws {
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
         let scenario = draft.scenario;
         if !matches!(scenario.loading, Some(Loading::Traffic(_))) {
-            return Err("no train runs, and a law settles by trains".into());
+            return Err("no train runs, and a law computes settlement only under trains".into());
         }
         if !draft.is_sprung() {
             return Err("rails, pads or supports of known stiffness are missing".into());
@@ -68,7 +68,7 @@ impl Tier for SettlementLaws {
     }
 }
 
-/// Whether a sleeper stands on layers alone.
+/// Whether a sleeper stands on layers without a stated support.
 fn stands_on_layers(scenario: &Scenario) -> bool {
     scenario.track.seats.iter().any(supports::stands_on_layers)
 }
@@ -77,7 +77,7 @@ fn named(law: &SettlementLaw) -> NamedLaw {
     NamedLaw { name: law.name.clone(), law: law.law, details: describe(law) }
 }
 
-/// The form of a law with its parameters as the language writes them, of one half sleeper.
+/// The form of a law with its parameters in the notation of the language, for half a sleeper.
 fn describe(named: &SettlementLaw) -> String {
     let mut law = named.law;
     let name = law.form.name();

@@ -1,7 +1,7 @@
-//! What stands under the sleepers: every tier is asked, and the cheapest that answers is taken.
+//! The model under the sleepers: every tier is asked, and the cheapest tier that can run the scene is taken.
 //!
-//! A tier is one file: it says whether it can run a scene, what that costs, by how much it is expected to be off, and which nodes it
-//! makes. One that refuses yields its plan all the same, so that physics rules can speak of it.
+//! A tier is one file. It states whether it can run a scene, the cost, the expected error, and the nodes of its plan. A
+//! tier that cannot run the scene still returns its plan, so that physics rules can check the plan.
 
 mod cells;
 mod equilibrium;
@@ -26,20 +26,20 @@ use crate::graph::{Cost, Edge, Node, Quantity, Rejected, Schedule};
 use crate::scenario;
 use crate::schema::Reads;
 
-/// A model of what lies under the sleepers.
+/// A model of the track bed under the sleepers.
 pub trait Tier: Send + Sync {
-    /// The word by which a scene asks for it.
+    /// The word with which a scene asks for the tier.
     fn name(&self) -> &'static str;
 
-    /// Which fields of the scene its plan reads, and with them the nodes of the plan.
+    /// Fields of the scene that the plan and its nodes read.
     fn reads(&self) -> &'static [&'static Reads] {
         &[]
     }
 
-    /// The plan that it makes of a scene; why there is none where the scene is not for it.
+    /// The plan of a scene, or the reason why the tier has no plan for it.
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String>;
 
-    /// Whether a scene that asks for a tier by this word is content with it.
+    /// Whether the tier may run a scene that asks for this word.
     fn answers(&self, word: &str) -> bool {
         self.name() == word
     }
@@ -51,20 +51,20 @@ pub struct Proposal {
     pub edges: Vec<Edge>,
     pub schedule: Schedule,
     pub cost: Cost,
-    /// In words, for the plan.
+    /// The decision and its reason, for the plan.
     pub what: String,
     pub why: String,
     pub error: ExpectedError,
     /// Whether this version can run it.
     pub runs: bool,
-    /// What stands against running it.
+    /// Reasons against running the plan.
     pub refusals: Vec<Diagnostic>,
 }
 
-/// By how much a tier is expected to be off.
+/// Expected error of a tier.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpectedError {
-    /// The error divided by the largest settlement; `None` where nobody has measured it.
+    /// Error / largest settlement; `None` if it has not been measured.
     pub share: Option<f64>,
     /// The evidence for this share.
     pub evidence: String,
@@ -89,7 +89,7 @@ impl Pass for ChooseTier<'_> {
                 Err(why) => rejected.push(Rejected { what: tier.name().into(), why, seconds: None }),
             }
         }
-        // those that run first, the cheapest of them first; equal ones stay in the order of the tiers
+        // plans that can run come first, then the cheapest; equal plans keep the order of the tiers
         offers.sort_by(|(_, a), (_, b)| {
             let seconds = |proposal: &Proposal| proposal.cost.seconds_on_two_cores;
             b.runs.cmp(&a.runs).then(seconds(a).total_cmp(&seconds(b)))
@@ -113,12 +113,12 @@ fn take(draft: &mut Draft<'_>, taken: Proposal, rejected: Vec<Rejected>) {
     draft.refusals = refusals;
     (draft.nodes, draft.edges) = (nodes, edges);
     (draft.schedule, draft.cost) = (Some(schedule), Some(cost));
-    // whatever its tier says, a plan against which an error stands is only looked at
+    // a plan with an error is shown but not run, even if its tier can run it
     draft.runs = runs && !has_errors(&draft.refusals);
     draft.decide_against("tier", what, why, rejected);
 }
 
-/// The word of a tier; `None` leaves the choice to the planner.
+/// The word of a tier; with `None` the planner chooses.
 fn asked(tier: scenario::Tier) -> Option<&'static str> {
     match tier {
         scenario::Tier::Auto => None,
@@ -137,13 +137,13 @@ fn not_asked(name: &str, proposal: &Proposal) -> Rejected {
 fn dearer(name: &str, proposal: &Proposal) -> Rejected {
     let why = if proposal.runs { "it costs more" } else { "this version cannot run it yet" };
     let error = match proposal.error.share {
-        Some(share) => format!("{why}; off by about {} % ({})", (100.0 * share).round(), proposal.error.evidence),
+        Some(share) => format!("{why}; error about {} % ({})", (100.0 * share).round(), proposal.error.evidence),
         None => format!("{why}; {}", proposal.error.evidence),
     };
     Rejected { what: name.into(), why: error, seconds: Some(proposal.cost.seconds_on_two_cores) }
 }
 
-/// Edges that bring everything that a node takes and another gives.
+/// Edges for all quantities that one node takes and another node gives.
 fn edges(nodes: &[Node]) -> Vec<Edge> {
     let mut edges = Vec::new();
     for to in nodes {

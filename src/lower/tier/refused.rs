@@ -1,4 +1,4 @@
-//! What grains under a track cannot run, told at what asks for it.
+//! Scenes that grains under a track cannot run, reported at the text that asks for them.
 
 use crate::diag::{Code, Diagnostic, Span};
 use crate::graph::GrainStretch;
@@ -6,15 +6,15 @@ use crate::lower::bed;
 use crate::scenario::{Base, Loading, Scenario};
 use crate::units::number;
 
-/// Why a track on grains cannot run this traffic, whatever lies where; nothing where it can.
+/// Reasons why a track on grains cannot run the traffic of the scene; empty if it can.
 pub(super) fn of_traffic(scenario: &Scenario) -> Vec<Diagnostic> {
     let grains = &scenario.solve.grains;
     let mut found = Vec::new();
     let Some(Loading::Traffic(traffic)) = &scenario.loading else {
         found.push(waits(
-            "grains under a track run under trains, and no train runs here".into(),
+            "a track on grains needs trains, and this scene has no `traffic`".into(),
             None,
-            "give the scene `traffic`",
+            "add `traffic` to the scene",
         ));
         return found;
     };
@@ -28,14 +28,14 @@ pub(super) fn of_traffic(scenario: &Scenario) -> Vec<Diagnostic> {
     }
     if scenario.track.bed.base == Base::Quiet {
         found.push(waits(
-            "under grains `base = quiet` lets the soil sink: a quiet base bears no load that stays".into(),
+            "`base = quiet` lets the soil under grains sink: a quiet base cannot carry a permanent load".into(),
             None,
-            "leave out `base = quiet`, and let the lowest layer of soil be deeper",
+            "leave out `base = quiet`, and make the lowest layer of soil thicker",
         ));
     }
     if grains.both_rails {
         found.push(waits(
-            "the bed of both rails cannot carry a track in this version".into(),
+            "`symmetry = full`, the bed of both rails, cannot carry a track in this version".into(),
             None,
             "write `symmetry = half`",
         ));
@@ -45,14 +45,16 @@ pub(super) fn of_traffic(scenario: &Scenario) -> Vec<Diagnostic> {
     if *grains.continuous
         && let Some(name) = short.first()
     {
-        let message = format!("vehicle `{name}` has no `length`: how closely do trains follow each other?");
+        let message =
+            format!("vehicle `{name}` has no `length`, which gives the distance of trains that follow each other");
         let help = "give the vehicle its `length` over couplers, such as `length = 10.3 m`";
         found.push(waits(message, grains.continuous.origin.span(), help));
     }
     found
 }
 
-/// Grains that change along a section, where beds lie between these ends (m): a bed is one from end to end. Glue may change.
+/// Diagnostics for grains that change along a section with beds between these ends (m). A bed has the same grains from
+/// end to end; only the glue may change.
 pub(super) fn other_grains(scenario: &Scenario, beds: &[[f64; 2]]) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (number_of, section) in scenario.track.sections.iter().enumerate() {
@@ -69,35 +71,36 @@ pub(super) fn other_grains(scenario: &Scenario, beds: &[[f64; 2]]) -> Vec<Diagno
             let [from, to] = [part.start, part.end].map(number);
             let name = &section.name;
             let message =
-                format!("from {from} to {to} m other layers of grains lie than in the rest of section `{name}`");
-            let help = "let the grains be the same there but for their `bond`, and change the soil below them; or run `substructure = law`";
+                format!("from {from} to {to} m the layers of grains differ from the rest of section `{name}`");
+            let help = "use the same grains in the whole section (only `bond` may differ) and change the soil below them; or write `substructure = law`";
             found.push(Diagnostic::new(Code::E0604, message).help(help));
         }
     }
     found
 }
 
-/// Lengths closer than this are one, m.
+/// Lengths that differ by less than this count as equal, m.
 const TINY: f64 = 1e-6;
 
-/// Too few sleepers on grains.
+/// Diagnostic for too few sleepers on grains.
 pub(super) fn few_sleepers(stretches: &[GrainStretch]) -> Option<Diagnostic> {
     (stretches.iter().map(|stretch| stretch.sleepers.len()).sum::<usize>() < FEWEST).then(|| {
         let message = format!("fewer than {FEWEST} sleepers stand on grains");
-        waits(message, None, "let `solve.window` reach over more bays of a section with a layer of grains")
+        waits(message, None, "make `solve.window` longer, over more bays of a section with a layer of grains")
     })
 }
 
-/// Vehicles that ride on the rail over the grains, where no rail joins the grains.
+/// Diagnostic for `coupling = monolithic` with cells of grains.
 pub(super) fn ridden(scenario: &Scenario) -> Option<Diagnostic> {
     scenario.solve.grains.monolithic.then(|| {
-        let message = "vehicles cannot ride over cells of grains: no rail joins the cells".to_owned();
+        let message =
+            "`coupling = monolithic` cannot run on cells of grains: the rail does not connect the cells".to_owned();
         let tier = scenario.solve.grains.tier;
         waits(message, tier.origin.span(), "leave out `coupling = monolithic`, or write `substructure = zone`")
     })
 }
 
-/// Sleepers on grains, at least.
+/// Least number of sleepers on grains.
 const FEWEST: usize = 2;
 
 pub(super) fn waits(message: String, at: Option<Span>, help: &str) -> Diagnostic {

@@ -1,4 +1,5 @@
-//! The soil below the grains of a track: the layers of its section, and along it what stretches and approach slabs put in their place.
+//! The soil below the grains of a track: the layers of its section, and the layers that stretches and approach slabs
+//! put in their place.
 
 use crate::diag::{Code, Diagnostic};
 use crate::graph::{SoilBlock, SoilLayer, SoilNode};
@@ -6,14 +7,14 @@ use crate::scenario::{self, ApproachSlab, Base, Groundwork, Layer, Material, Sce
 use crate::solvers::continuum::Strength;
 use crate::units::number;
 
-/// Size of the elements where the scene says none, m: the width of a sleeper's base has two or three of them.
+/// Default size of the soil elements, m: two or three elements in the width of the base of a sleeper.
 const ELEMENT: f64 = 0.1;
 /// Poisson's ratio of the concrete of an approach slab.
 const CONCRETE: f64 = 0.2;
-/// Lengths closer than this are one, m.
+/// Lengths that differ by less than this count as equal, m.
 const TINY: f64 = 1e-6;
 
-/// The soil of a scene. Of a layer that varies along the track each element has the value at its middle.
+/// The soil of a scene. If a layer varies along the track, each element has the value at its middle.
 pub(super) fn soil(scenario: &Scenario) -> SoilNode {
     let grains = &scenario.solve.grains;
     let element = grains.soil_element.map_or(ELEMENT, |size| *size);
@@ -36,7 +37,8 @@ pub(super) fn soil(scenario: &Scenario) -> SoilNode {
     }
 }
 
-/// Why the layers along a track cannot lie under its grains, beds given by their ends (m): a slab needs soil around it.
+/// Diagnostics for approach slabs inside layers of grains; `beds` are the ends (m) of the beds. A slab must lie in
+/// soil.
 pub(super) fn refusals(scenario: &Scenario, beds: &[[f64; 2]]) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (number_of, section) in scenario.track.sections.iter().enumerate() {
@@ -50,11 +52,11 @@ pub(super) fn refusals(scenario: &Scenario, beds: &[[f64; 2]]) -> Vec<Diagnostic
             if let Some(slab) = part.approach_slab.filter(|slab| *slab.depth < thickness - TINY) {
                 let over = format!("from {} to {} m", number(part.start), number(part.end));
                 let message = format!(
-                    "{over} an approach slab lies {} m below the sleepers, among grains that are {} m thick",
+                    "{over} the approach slab lies {} m below the sleepers, inside the layers of grains, which are {} m thick",
                     number(*slab.depth),
                     number(thickness)
                 );
-                let help = format!("give the slab a `depth` of {} m at least", number(thickness));
+                let help = format!("give the slab a `depth` of at least {} m", number(thickness));
                 found.push(Diagnostic::new(Code::E0604, message).help(help));
             }
         }
@@ -68,7 +70,7 @@ fn granular(layers: &[Layer], x: f64) -> Vec<(&str, f64)> {
     of_grains.map(|layer| (layer.name.as_str(), (layer.thickness.value_at(x) / TINY).round() * TINY)).collect()
 }
 
-/// What lies along the track, from left to right; the ground of sections with grains on soil alone.
+/// The ground along the track, from left to right; only sections with grains on soil.
 fn parts(scenario: &Scenario) -> Vec<Groundwork> {
     let track = &scenario.track;
     let on_soil = |section: &usize| {
@@ -76,7 +78,7 @@ fn parts(scenario: &Scenario) -> Vec<Groundwork> {
         layers.iter().any(|layer| layer.soil().is_some()) && layers.iter().any(|layer| layer.granular().is_some())
     };
     let mut sections: Vec<usize> = (0..track.sections.len()).filter(on_soil).collect();
-    // without grains anywhere the plan still says what the soil is
+    // if there are no grains, the plan still shows the soil
     if sections.is_empty() {
         sections = (0..track.sections.len()).collect();
     }
@@ -85,7 +87,7 @@ fn parts(scenario: &Scenario) -> Vec<Groundwork> {
     parts
 }
 
-/// A part as blocks of even layers: one, or one an element where a layer varies.
+/// Divides a part into blocks of constant layers: one block, or one block for each element if a layer varies.
 fn blocks(part: &Groundwork, element: f64) -> Vec<SoilBlock> {
     let [start, end] = [part.start, part.end];
     let count = ((end - start) / element).ceil().max(1.0) as usize;
@@ -126,7 +128,7 @@ fn layers(part: &Groundwork, x: f64) -> Vec<SoilLayer> {
     }
 }
 
-/// Layers with a slab in them whose top is at a depth below the grains, m: it displaces what is there.
+/// Layers with a slab in them; `top` is the depth of its top below the grains, m. The slab replaces the soil there.
 fn with_slab(soil: &[SoilLayer], slab: &ApproachSlab, top: f64) -> Vec<SoilLayer> {
     let plate = SoilLayer {
         name: "approach slab".into(),

@@ -1,4 +1,4 @@
-//! Volumes of grains under a track in which passages are recorded, as records ask for them.
+//! Volumes of grains under a track in which passages are recorded.
 
 use super::refused::waits;
 use crate::diag::Diagnostic;
@@ -6,7 +6,7 @@ use crate::graph::{BedPlan, GrainStretch, InVolume, SensorNode, SensorVolume, Vo
 use crate::scenario::response::Response;
 use crate::scenario::{Scenario, Volume, VolumeRecord};
 
-/// A volume under each seat of a record that stands on grains; the others have none. `every` is the interval of histories, s.
+/// A volume under each recorded seat that stands on grains. `every` is the interval of histories, s.
 pub(super) fn volumes(
     scenario: &Scenario,
     beds: &[BedPlan],
@@ -31,8 +31,8 @@ pub(super) fn volumes(
     seats.filter_map(volume).collect()
 }
 
-/// The volume under a seat. `start` is the chainage at which the bed begins, `bed` its length and width, m. The volume lies below the rail
-/// seat, or beside it where the sides of the bed are too near.
+/// The volume under a seat. `start` is the chainage at which the bed begins, `bed` its length and width, m. The volume
+/// lies below the rail seat, or beside it if the sides of the bed are too near.
 fn sensor(scenario: &Scenario, record: &VolumeRecord, seat: usize, (start, bed): (f64, [f64; 2])) -> SensorNode {
     let track = &scenario.track;
     let seat = &track.seats[seat];
@@ -50,9 +50,9 @@ fn sensor(scenario: &Scenario, record: &VolumeRecord, seat: usize, (start, bed):
     SensorNode { name, x: seat.x, place: [seat.x - start, y, depth], volume, bed }
 }
 
-/// What passages over grains do not record.
+/// Diagnostic for a response that passages over grains cannot record.
 pub(super) fn refusals(scenario: &Scenario) -> Option<Diagnostic> {
     let record = scenario.volumes.iter().find(|record| record.quantities.contains(&Response::Porosity))?;
-    let message = "`porosity` in a volume under a track is not in this version".to_owned();
-    Some(waits(message, record.span, "leave it out; a test rig records it"))
+    let message = "this version cannot record `porosity` under a track".to_owned();
+    Some(waits(message, record.span, "leave out `porosity`; only a test rig records it"))
 }

@@ -1,4 +1,5 @@
-//! What a rig costs, without packing it: grains from gradings, steps from the lightest grain.
+//! Cost of a test rig, estimated without packing it: number of grains from the gradings, time steps from the lightest
+//! grain.
 
 use super::{cycles, loads, period, rest_time};
 use crate::graph::{BedNode, BlockWeight, Blocks, Cost, Passing, TestWork, Work};
@@ -12,25 +13,27 @@ use std::f64::consts::PI;
 
 /// Share of the volume that grains fill in a packed bed.
 const SOLID: f64 = 0.6;
-/// Over sqrt(m / k) of the lightest grain, the step of a test and that of packing, which holds light grains back.
+/// Time step of a test and of packing / sqrt(m / k) of the lightest grain; packing damps light grains.
 const STEP: f64 = 0.1;
 const PACKING_STEP: f64 = 0.25;
-/// Time, s, that a stage of packing takes, and stages beside those of lifts; and the setting down of sleepers, at twice the step.
+/// Time of a packing stage, s; number of stages in addition to the lifts; time of setting down the sleepers, s, at
+/// twice the step.
 const STAGE: f64 = 0.45;
 const LAST_STAGES: u32 = 3;
 const SET_DOWN: f64 = 0.15;
-/// Time, s, in which the grains of cribs are poured and come to rest, at the step of a test.
+/// Time in which the grains of cribs are poured and come to rest, s, at the step of a test.
 const POURING: f64 = 1.0;
-/// Steps of a pebble a second on two cores, of clumps of three, while it is packed and tested (`docs/validation.md`).
+/// Pebble steps per second on two cores, for clumps of three pebbles, during packing and during a test
+/// (`docs/validation.md`).
 const PEBBLE_STEPS: [f64; 2] = [10e6, 20e6];
-/// Time on one core over that on two.
+/// Time on one core / time on two cores.
 const SECOND_CORE: f64 = 1.7;
 
-/// Bytes of a pebble with its contacts, their histories, and its copy in a checkpoint (16 bays of the paper's bed hold 154,000 pebbles in
-/// 726 MB).
+/// Bytes per pebble, with its contacts, their histories, and its copy in a checkpoint (16 bays of the bed of the paper
+/// hold 154,000 pebbles in 726 MB).
 const BYTES: f64 = 4_700.0;
 
-/// The grains of a plan area of a section.
+/// The grains on a plan area of a section.
 struct Filling {
     grains: f64,
     pebbles: f64,
@@ -41,7 +44,7 @@ struct Filling {
     rest: f64,
 }
 
-/// What fills `area` (m2) of a section; layers whose grading is no curve are left out.
+/// The grains on `area` (m2) of a section; layers whose grading is not a valid curve are left out.
 fn filling(scenario: &Scenario, section: &Section, area: f64) -> Filling {
     let materials: Vec<(f64, &Granular, Curve)> = section
         .layers
@@ -74,7 +77,7 @@ fn beside(section: &Section, space: f64) -> [f64; 2] {
     [grains, grains * pebbles_of(&top.shape)]
 }
 
-/// The estimate for a rig: good to a factor of two. One that has no bed is refused, and costs nothing.
+/// The estimate for a test rig, within a factor of two. A rig without a bed is refused and has no cost.
 pub(super) fn of_rig(scenario: &Scenario, bed: Option<&BedNode>) -> Cost {
     let Some(bed) = bed else { return cost(0.0, TestWork::default()) };
     let section = &scenario.track.sections[0];
@@ -89,7 +92,7 @@ pub(super) fn of_rig(scenario: &Scenario, bed: Option<&BedNode>) -> Cost {
     let pouring = if bed.crib.is_some() { POURING } else { 0.0 };
     let test_steps = (SET_DOWN + pouring + (0.5 + cycles(&loads) as f64) * period(&loads, rest)) / step;
     let packings = scenario.solve.grains.repeats;
-    // while a bed is packed half of it is there on average
+    // during packing half of the bed is present on average
     let [packing, testing] = [0.5 * packing_steps, copies * test_steps];
     let steps_beside = beside_pebbles * test_steps / PEBBLE_STEPS[1];
     let seconds =
@@ -108,14 +111,15 @@ fn cost(seconds: f64, work: TestWork) -> Cost {
     }
 }
 
-/// Step of grains under a track over sqrt(m / k) of the lightest, and steps of a pebble a second on two cores, soil and rail included
-/// (`docs/validation.md`, a track on grains).
+/// Time step of grains under a track / sqrt(m / k) of the lightest grain; pebble steps per second on two cores, with
+/// soil and rail (`docs/validation.md`, a track on grains).
 const TRACK_STEP: f64 = 0.36;
 const TRACK_PEBBLE_STEPS: f64 = 16e6;
 /// Time of the stages of building, s.
 const BUILDING: f64 = 0.7;
 
-/// The estimate for grains under so many metres of a track: every train runs over them, in their own time step. Good to a factor of two.
+/// The estimate for grains under a length of track, within a factor of two: every train runs over the grains in their
+/// time step.
 pub(in crate::lower::tier) fn grains_under_track(draft: &Draft<'_>, blocks: Option<&Blocks>, passing: Passing) -> Cost {
     let length = passing.length;
     let scenario = draft.scenario;
@@ -142,22 +146,24 @@ pub(in crate::lower::tier) fn grains_under_track(draft: &Draft<'_>, blocks: Opti
 /// Trains over cells of grains.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::lower::tier) struct PassingCells {
-    /// Bays of all cells.
+    /// Total number of bays of all cells.
     pub bays: f64,
-    /// Between the fronts of trains that follow each other, s; `None` where they run one by one.
+    /// Time between the fronts of trains that follow each other, s; `None` if they run one by one.
     pub headway_time: Option<f64>,
-    /// Between the first and the last wheel of a train, s.
+    /// Time between the first and the last wheel of a train, s.
     pub alone: f64,
 }
 
-/// Time beside a train that runs alone, and before and behind each, s.
+/// Additional time of a train that runs alone, and of every train, s.
 const BESIDE_ALONE: f64 = 0.1;
 const BESIDE_EACH: f64 = 0.04;
-/// Trains that a cell computes: the first ones, and a share of the others; one a block at least (`docs/validation.md`, cells).
+/// Trains that a cell computes: the first trains, and a share of the others; at least one in each block
+/// (`docs/validation.md`, cells).
 const FIRST_TRAINS: f64 = 12.0;
 const OTHER_TRAINS: f64 = 0.1;
 
-/// The estimate for cells of grains: good to a factor of three, as nobody knows how many trains a cell leaves out.
+/// The estimate for cells of grains, within a factor of three: the number of trains that a cell leaves out is not known
+/// in advance.
 pub(in crate::lower::tier) fn cells_under_track(draft: &Draft<'_>, blocks: &Blocks, passing: PassingCells) -> Cost {
     let scenario = draft.scenario;
     let sections = scenario.track.sections.iter().enumerate().filter(|(_, section)| super::has_grains(section));
@@ -196,7 +202,7 @@ fn lightest(granular: &Granular, curve: &Curve) -> f64 {
     let mass = *granular.density * PI / 6.0 * curve.ends()[0].powi(3);
     let stiffness = match granular.contact {
         Contact::Linear { stiffness } => *stiffness * granular.shear_ratio.max(1.0),
-        // beds of such grains are refused before anything runs
+        // beds of grains with Hertz contacts are refused before the run
         Contact::Hertz { .. } => return f64::INFINITY,
     };
     (mass / stiffness).sqrt()

@@ -19,11 +19,11 @@ use std::f64::consts::PI;
 const PLATE: &str = "plate";
 const PLATE_MASS: f64 = 157.0;
 const PLATE_HEIGHT: f64 = 0.02;
-/// By how much it is wider than a specimen, which may grow under it.
+/// Width of the plate / width of a specimen, which may bulge under the plate.
 const WIDER: f64 = 2.0;
-/// Inertial number up to which grains move as if at rest (GDR MiDi 2004): a plate that is driven is no faster.
+/// Largest inertial number of quasi-static flow of grains (GDR MiDi 2004); it limits the speed of a driven plate.
 const INERTIAL: f64 = 1e-3;
-/// A constant force grows and is held for this long, s.
+/// Time in which a constant force grows and is held, s.
 const HELD: f64 = 0.5;
 
 pub struct TestRig;
@@ -36,7 +36,7 @@ impl Tier for TestRig {
         "rig"
     }
 
-    /// A bed under actuators is the same in every tier of grains.
+    /// A bed under actuators is the same for every tier of grains.
     fn answers(&self, word: &str) -> bool {
         ["cells", "zone", "full"].contains(&word)
     }
@@ -48,7 +48,7 @@ impl Tier for TestRig {
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
         let scenario = draft.scenario;
         if !stands_on_its_bed(scenario) {
-            return Err("no loads act on sleepers or a bed without rails".into());
+            return Err("no loads act on sleepers or on a bed without rails".into());
         }
         let mut refusals = refusals::refusals(scenario);
         let nodes = match beds(scenario, BedUse::Rig) {
@@ -67,8 +67,11 @@ impl Tier for TestRig {
             schedule: Schedule::Actuators(tests),
             cost,
             what: "a bed of grains under actuators".into(),
-            why: "loads act on sleepers or a bed, and there are no rails".into(),
-            error: ExpectedError { share: None, evidence: "scatter between packings; `repeats` shows it".into() },
+            why: "loads act on sleepers or on a bed, and there are no rails".into(),
+            error: ExpectedError {
+                share: None,
+                evidence: "the results scatter between packings; `repeats` shows the scatter".into(),
+            },
             runs: refusals.is_empty(),
             refusals,
         })
@@ -80,9 +83,11 @@ impl TestRig {
         let confinement = confinement(scenario);
         let crib = crib::note(&scenario.track.sections[0]);
         bed.notes.push(match confinement {
-            Some(pressure) => format!("Its four sides give way under {} kPa.", number(pressure / 1e3)),
-            None if crib.is_some() => "The bed goes on periodically along the track.".into(),
-            None => "The bed goes on periodically along the track; nothing lies beside or between the sleepers.".into(),
+            Some(pressure) => {
+                format!("Its four sides move under a constant pressure of {} kPa.", number(pressure / 1e3))
+            }
+            None if crib.is_some() => "The bed is periodic along the track.".into(),
+            None => "The bed is periodic along the track; there are no grains beside or between the sleepers.".into(),
         });
         bed.notes.extend(crib);
         let loads = loads(scenario);
@@ -136,7 +141,7 @@ fn has_grains(section: &Section) -> bool {
     section.layers.iter().any(|layer| layer.granular().is_some())
 }
 
-/// All loads, those that stay as they are among them.
+/// All loads, including constant loads.
 pub(super) fn loads(scenario: &Scenario) -> Vec<RigLoad> {
     match &scenario.loading {
         Some(Loading::Rig(loads)) => loads.clone(),
@@ -169,18 +174,21 @@ fn period(loads: &[RigLoad], rest: f64) -> f64 {
     loads.iter().find_map(of).unwrap_or(HELD)
 }
 
-/// In which a pressure moves a grain by its own size, d sqrt(rho / p), s: the longest of layers of mean volume, density and pressure.
+/// Time in which a pressure moves a grain by its own size, d sqrt(rho / p), s: the largest value of layers with a mean
+/// volume, density and pressure.
 fn rest_time(layers: impl Iterator<Item = [f64; 3]>) -> f64 {
     let of = |[volume, density, pressure]: [f64; 3]| (6.0 * volume / PI).cbrt() * (density / pressure).sqrt();
     layers.map(of).fold(0.0, f64::max)
 }
 
-/// How fast a plate is driven, and why.
+/// Speed of a driven plate and its reason, for people.
 fn driven(loads: &[RigLoad], rest: f64) -> Option<String> {
     let strain = loads.iter().any(|load| matches!(load.force, Force::Strain(_)));
     let rate = format!("{:.1}", 100.0 * INERTIAL / rest);
     strain.then(|| {
-        format!("The plate shortens the bed by {rate} % a second: an inertial number of {INERTIAL}, as if at rest.")
+        format!(
+            "The plate compresses the bed by {rate} % per second: quasi-static, with an inertial number of {INERTIAL}."
+        )
     })
 }
 
@@ -189,7 +197,7 @@ fn cycles(loads: &[RigLoad]) -> u64 {
     loads.iter().filter_map(of).max().unwrap_or(1)
 }
 
-/// Cycles of which loops and sensors are kept: those that records ask for, the first and the last.
+/// Cycles whose loops and sensor readings are kept: the recorded cycles, the first and the last.
 fn kept(scenario: &Scenario, cycles: u64) -> Vec<u64> {
     let asked = scenario.records.iter().flat_map(|record| &record.after);
     let asked = asked.chain(scenario.volumes.iter().flat_map(|record| &record.after)).copied();
@@ -199,7 +207,7 @@ fn kept(scenario: &Scenario, cycles: u64) -> Vec<u64> {
     kept
 }
 
-/// The load that acts on a seat: one that stands there, or one that moves over it.
+/// The load that acts on a seat, either at a fixed place or moving over the seat.
 fn load_at<'a>(seat: &Seat, loads: &'a [RigLoad]) -> Option<&'a RigLoad> {
     loads.iter().find(|load| acts_on(load, seat))
 }
@@ -220,7 +228,7 @@ fn sleeper(scenario: &Scenario, seat: &Seat, loads: &[RigLoad], across: f64) -> 
         name: scenario.track.seat_name(seat),
         x: seat.x,
         place: [seat.x - start, y],
-        // what bears is as wide as the sleeper, and no longer than it
+        // the bearing area is as wide as the sleeper and at most as long
         size: [base_width, (base_area / base_width).min(length), height],
         mass: share * **mass,
     };
@@ -241,7 +249,7 @@ fn plate(scenario: &Scenario, load: &RigLoad, [length, across]: [f64; 2]) -> (St
     (body, force(load, share, 0.0))
 }
 
-/// Force of an actuator, of one rail or of a share of it, `away` m behind the place of its load.
+/// Force of an actuator for `share` of one rail, `away` m behind the place of its load.
 fn force(load: &RigLoad, share: f64, away: f64) -> Load {
     match &load.force {
         Force::Constant(force) => Load::Constant(share * **force),

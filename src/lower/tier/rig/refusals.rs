@@ -1,4 +1,4 @@
-//! What no rig can be made of, told before anything is packed.
+//! Scenes that give no test rig, refused before anything is packed.
 
 use super::{acts_on, has_grains, loads};
 use crate::diag::{Code, Diagnostic, Span};
@@ -8,7 +8,7 @@ use crate::units::number;
 /// Every mistake of a rig.
 pub(super) fn refusals(scenario: &Scenario) -> Vec<Diagnostic> {
     if let Some(section) = scenario.track.sections.iter().find(|section| !has_grains(section)) {
-        let message = format!("a rig stands on grains, and `{}` has no layer of them", section.name);
+        let message = format!("a test rig needs a bed of grains, and `{}` has no layer of grains", section.name);
         return vec![refused(
             message,
             section.layers_span,
@@ -24,7 +24,7 @@ pub(super) fn refusals(scenario: &Scenario) -> Vec<Diagnostic> {
         && loads.iter().any(|load| load.on == Target::Bed)
     {
         let message = format!("`{}` and `{}` act together with a plate over the whole bed", first.name, second.name);
-        let help = "a plate leaves no room for another load: keep one";
+        let help = "a plate covers the whole bed: keep one load";
         found.push(refused(message, Some(second.span), "a second load", help));
     } else if loads.iter().all(|load| load.on == Target::Sleepers) {
         sleepers(scenario, &loads, &mut found);
@@ -45,8 +45,9 @@ fn refused(message: String, at: Option<Span>, text: &str, help: &str) -> Diagnos
 fn one_bed(scenario: &Scenario, found: &mut Vec<Diagnostic>) {
     let sections = &scenario.track.sections;
     if let [first, second, ..] = sections.as_slice() {
-        let message = format!("a rig stands on one bed, and `{}` lies beside `{}`", second.name, first.name);
-        let help = "keep one section, and run the other as a scene of its own";
+        let message =
+            format!("a test rig has one bed, but section `{}` lies beside section `{}`", second.name, first.name);
+        let help = "keep one section, and run the other section in a separate scene";
         found.push(refused(message, second.length_origin.span(), "a second bed", help));
     }
 }
@@ -55,10 +56,9 @@ fn no_crib_under_a_plate(scenario: &Scenario, loads: &[RigLoad], found: &mut Vec
     let plate = loads.iter().find(|load| load.on == Target::Bed);
     let crib = scenario.track.sections.iter().find_map(|section| section.crib);
     if let (Some(plate), Some(crib)) = (plate, crib) {
-        let message =
-            format!("`{}` presses with a plate over the whole bed, which leaves no `crib` to fill", plate.name);
+        let message = format!("`{}` acts on a plate over the whole bed, so there is no `crib` to fill", plate.name);
         let help = "write `crib = none`, or let the load act on sleepers";
-        found.push(refused(message, crib.height.origin.span(), "beside no sleeper", help));
+        found.push(refused(message, crib.height.origin.span(), "no sleepers here", help));
     }
 }
 
@@ -67,23 +67,23 @@ fn sleepers(scenario: &Scenario, loads: &[RigLoad], found: &mut Vec<Diagnostic>)
     let Some(seat) = track.seats.first() else { return };
     let spacing = track.sections[seat.section].spacing;
     let Some(body) = seat.sleeper.filter(|_| matches!(seat.foot, Foot::Sleeper { .. })) else {
-        let message = "a rig loads sleepers, and this track has none".to_owned();
+        let message = "the load acts on sleepers, but this track has no sleepers".to_owned();
         let at = loads.first().map(|load| load.span);
-        found.push(refused(message, at, "loads a sleeper", "give the trackform a `sleeper`"));
+        found.push(refused(message, at, "acts on a sleeper", "give the trackform a `sleeper`"));
         return;
     };
     if let Some(usp) = track.seats.iter().find_map(Seat::usp) {
-        let message = "under sleeper pads on grains are not in this version".to_owned();
-        let help = "leave `usp` out: sleepers of a rig lie on the grains themselves";
-        found.push(refused(message, usp.stiffness.origin.span(), "softer than grains", help));
+        let message = "a test rig cannot have under sleeper pads in this version".to_owned();
+        let help = "leave out `usp`: the sleepers of a test rig lie directly on the grains";
+        found.push(refused(message, usp.stiffness.origin.span(), "an under sleeper pad", help));
     }
     if body.base_width >= track.shortest_bay() {
         let message = format!(
-            "sleepers of {} mm stand {} mm apart, and a bed under them needs a gap",
+            "sleepers are {} mm wide and stand {} mm apart; a test rig needs a gap between sleepers",
             number((body.base_width * 1e3).round()),
             number((track.shortest_bay() * 1e3).round())
         );
-        let help = "a wider `spacing`, or a narrower `base_width`";
+        let help = "write a larger `spacing`, or a smaller `base_width`";
         found.push(refused(message, spacing.origin.span(), "too close", help));
     }
 }
@@ -94,14 +94,14 @@ fn one_load_each(scenario: &Scenario, loads: &[RigLoad], found: &mut Vec<Diagnos
         if let [first, second, ..] = acting.as_slice() {
             let name = scenario.track.seat_name(seat);
             let message = format!("`{}` and `{}` both act on sleeper {name}", first.name, second.name);
-            let help = "a sleeper has one actuator: leave one of them out";
+            let help = "a sleeper has one actuator: leave out one load";
             found.push(refused(message, Some(second.span), "a second actuator", help));
             return;
         }
     }
 }
 
-/// Actuators that move to and fro do so in one rhythm, which is the cycle that is counted.
+/// All cyclic actuators must have the same frequency and number of cycles, because the run counts cycles.
 fn one_rhythm(loads: &[RigLoad], found: &mut Vec<Diagnostic>) {
     let mut first: Option<(&RigLoad, f64)> = None;
     for load in loads {
@@ -109,19 +109,21 @@ fn one_rhythm(loads: &[RigLoad], found: &mut Vec<Diagnostic>) {
             Force::Constant(_) => continue,
             Force::Cyclic { frequency, .. } => {
                 if **frequency <= 0.0 {
-                    let message = format!("`{}` comes back 0 times a second", load.name);
-                    let help = "a frequency above 0 Hz, or a constant force";
-                    found.push(refused(message, frequency.origin.span(), "never", help));
+                    let message = format!("`{}` has a frequency of 0 Hz", load.name);
+                    let help = "write a frequency above 0 Hz, or a constant force";
+                    found.push(refused(message, frequency.origin.span(), "0 Hz", help));
                     continue;
                 }
                 **frequency
             }
             Force::History(points) => {
                 if load.cycles > 1 || *load.speed > 0.0 {
-                    let message =
-                        format!("the forces of a file act once and in one place, `{}` asks for more", load.name);
-                    let help = "write every cycle into the file; leave `total` and `speed` out";
-                    found.push(refused(message, load.changes, "once, in one place", help));
+                    let message = format!(
+                        "the forces of a file act once and at one place, but `{}` repeats or moves them",
+                        load.name
+                    );
+                    let help = "write every cycle into the file; leave out `total` and `speed`";
+                    found.push(refused(message, load.changes, "not with a file", help));
                 }
                 1.0 / (points.last().map_or(0.0, |p| p[0]) - points.first().map_or(0.0, |p| p[0]))
             }
@@ -131,8 +133,8 @@ fn one_rhythm(loads: &[RigLoad], found: &mut Vec<Diagnostic>) {
         match first {
             Some((other, rhythm)) if rhythm != frequency || other.cycles != load.cycles => {
                 let message = format!("`{}` and `{}` differ in frequency or number of cycles", other.name, load.name);
-                let help = "the cycles of a rig are those of all its actuators";
-                found.push(refused(message, Some(load.span), "in another rhythm", help));
+                let help = "all actuators of a test rig need the same frequency and the same number of cycles";
+                found.push(refused(message, Some(load.span), "differs", help));
                 return;
             }
             Some(_) => {}
