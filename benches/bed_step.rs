@@ -5,10 +5,10 @@
 //!     [--warm 60] [--step 7] [--shear RATIO] [--limits] [--no-sleepers]
 //! ```
 //!
-//! `DIR` keeps the packed cell, which takes minutes to make. Rounds of so many steps go from one number of threads to the next in turn; told are
-//! the least and the median of each part, in ms a step, as JSON. `--step` is in us. `--shear` is the ratio of the shear dashpots, that of the scene
-//! where it is not given. `--limits` adds how long a step
-//! may be, as it is and with inertia added, which takes minutes.
+//! `DIR` keeps the packed cell, which takes minutes to make. Rounds of so many steps go from one number of threads to
+//! the next in turn; told are the least and the median of each part, in ms a step, as JSON. `--step` is in us.
+//! `--shear` is the ratio of the shear dashpots, that of the scene where it is not given. `--limits` adds how long a
+//! step may be, as it is and with inertia added, which takes minutes.
 
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
@@ -19,7 +19,8 @@ use trackbed::solvers::granular::{Bed, ContactLaw, Dashpot, Pose, Shape, Timings
 use trackbed::store::Beds;
 use trackbed::trials::grains::peak_memory;
 
-/// Length, width and height of half a sleeper, m, its mass with what stands on it, kg, and how far its load goes up and down, N.
+/// Length, width and height of half a sleeper, m, its mass with what stands on it, kg, and how far its load goes up and
+/// down, N.
 const SLEEPER: [f64; 3] = [0.3, 1.2, 0.2];
 const MASS: f64 = 150.0;
 const LOAD: f64 = 40e3;

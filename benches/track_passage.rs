@@ -77,8 +77,8 @@ fn main() -> Result<(), TrackError> {
     against_the_plain_way(&track, &level, vehicle)
 }
 
-/// One passage of the wagon over the whole model in steps of 0.05 ms, and what the plain way would take at the least: the
-/// same banded matrix factored anew and solved in each of its Newton iterations, all else for nothing.
+/// One passage of the wagon over the whole model in steps of 0.05 ms, and what the plain way would take at the least:
+/// the same banded matrix factored anew and solved in each of its Newton iterations, all else for nothing.
 fn against_the_plain_way(track: &Arc<Track>, level: &TrackLevel, vehicle: Vehicle) -> Result<(), TrackError> {
     let stepper = Stepper::new(track.clone(), Scheme::generalised_alpha(5e-5, 0.85)?)?;
     let train = Train::single(vehicle, Direction::Forward);

@@ -1,10 +1,12 @@
-//! How long a step of a track's bed may be, by the ratio of its dashpots: limits of the network of contacts, and runs on both sides of them.
+//! How long a step of a track's bed may be, by the ratio of its dashpots: limits of the network of contacts, and runs
+//! on both sides of them.
 //!
 //! ```text
 //! cargo run --release --example bed_dashpots -- DIR [SCENE] [FOLDER]
 //! ```
 //!
-//! `DIR` keeps the packed cell, which takes a minute to make. Writes `bed_dashpots.csv` and `bed_dashpots.svg` into the folder.
+//! `DIR` keeps the packed cell, which takes a minute to make. Writes `bed_dashpots.csv` and `bed_dashpots.svg` into the
+//! folder.
 
 use std::fmt::Write;
 use trackbed::lower::{BedUse, beds};

@@ -5,9 +5,10 @@
 //! cargo run --release --example coupled_charts -- tiers NAME=DIR NAME=DIR ...
 //! ```
 //!
-//! `passages` draws what a sleeper presses on its ballast with under wagons one by one (`--set solve.passages=isolated`) and under a train
-//! (`=continuous`); both runs record `contact_force` at sleeper -1. `tiers` draws the settlement of the sleepers before a structure at the
-//! last count that all runs recorded. A chart and its table go to `docs/charts`.
+//! `passages` draws what a sleeper presses on its ballast with under wagons one by one (`--set
+//! solve.passages=isolated`) and under a train (`=continuous`); both runs record `contact_force` at sleeper -1. `tiers`
+//! draws the settlement of the sleepers before a structure at the last count that all runs recorded. A chart and its
+//! table go to `docs/charts`.
 
 use std::fmt::Write;
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! How long the language server takes, request by request, on scenes of 100, 1,000 and 10,000 lines; the table of docs/editor.md.
+//! How long the language server takes, request by request, on scenes of 100, 1,000 and 10,000 lines; the table of
+//! docs/editor.md.
 //!
 //! ```sh
 //! cargo run --release --example editor_times

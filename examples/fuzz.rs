@@ -6,8 +6,9 @@
 //! cargo run --release --example fuzz -- stl 1000000
 //! ```
 //!
-//! Run `k` is the same everywhere, so a run that ends the program (a stack that overflows) is found again by its number. What fails
-//! is written to `fuzz/corpus`, or to `fuzz/files` where it is no text of the language; the tests replay both.
+//! Run `k` is the same everywhere, so a run that ends the program (a stack that overflows) is found again by its
+//! number. What fails is written to `fuzz/corpus`, or to `fuzz/files` where it is no text of the language; the tests
+//! replay both.
 
 #[path = "../fuzz/bytes.rs"]
 mod bytes;

@@ -1,4 +1,5 @@
-//! Where the steps of grains end: runs on a grid of step, damping ratio, contacts a body and size ratio, against theory.
+//! Where the steps of grains end: runs on a grid of step, damping ratio, contacts a body and size ratio, against
+//! theory.
 //!
 //!     cargo run --release --example grain_stability -- docs/charts
 //!

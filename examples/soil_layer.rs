@@ -2,8 +2,8 @@
 //!
 //!     cargo run --example soil_layer -- DIRECTORY SIZE
 //!
-//! writes `layer.inp` (elements C3D8I), and for each formulation `mean.csv` and `mixed.csv`: place and displacement of every node.
-//! `benches/soil_calculix.py` runs both programs and compares them.
+//! writes `layer.inp` (elements C3D8I), and for each formulation `mean.csv` and `mixed.csv`: place and displacement of
+//! every node. `benches/soil_calculix.py` runs both programs and compares them.
 
 use std::fmt::Write;
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! Files that nobody would write, made from such as the program writes: bytes changed anywhere, or one value of a JSON text.
+//! Files that nobody would write, made from such as the program writes: bytes changed anywhere, or one value of a JSON
+//! text.
 
 use super::dice::Dice;
 use serde_json::Value;

@@ -100,7 +100,8 @@ pub fn text(seeds: &[&str], number: u64) -> String {
 /// Lines of a piece at most: a grammar is reached as well by few lines, in a tenth of the time of a whole scene.
 const PIECE: usize = 12;
 
-/// The text of run `number`: some lines of one of the seeds, in one run of sixteen all of them, changed in a few places.
+/// The text of run `number`: some lines of one of the seeds, in one run of sixteen all of them, changed in a few
+/// places.
 pub fn piece(seeds: &[&str], number: u64) -> String {
     let mut dice = Dice::new(number);
     let seed = dice.pick(seeds);

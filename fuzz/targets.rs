@@ -28,7 +28,8 @@ pub fn format(text: &str) {
     assert_eq!(syntax::parse(FileId(0), &once).1, [], "formatted text does not parse");
 }
 
-/// Checks between which the texts that are remembered are forgotten: the standard library stays for a while, and memory is kept.
+/// Checks between which the texts that are remembered are forgotten: the standard library stays for a while, and memory
+/// is kept.
 const MEMORY: u32 = 1000;
 
 thread_local! {

@@ -1,7 +1,8 @@
 //! Trackbed: a language and a solver for railway transition zones.
 //!
-//! A `.track` file reads like the data sheet of a scene. A program needs [`Scene`] and what it gives: [`Scene::check`] says
-//! everything that is wrong, [`Scene::set`] edits a line by its path, [`Scene::run`] gives a [`results::Run`] with its tables.
+//! A `.track` file reads like the data sheet of a scene. A program needs [`Scene`] and what it gives: [`Scene::check`]
+//! says everything that is wrong, [`Scene::set`] edits a line by its path, [`Scene::run`] gives a [`results::Run`] with
+//! its tables.
 //!
 //! ```
 //! let jack = trackbed::Scene::from_text(r#"
@@ -19,9 +20,9 @@
 //! # Ok::<(), trackbed::Stopped>(())
 //! ```
 //!
-//! Inside, [`compile`](compile()) checks a text and lowers it into a solver graph, [`execute`] runs the graph by its schedule,
-//! [`results`] keeps what came out and [`report`] shows it. The modules below stand in the order of that flow; each knows only
-//! what stands before it.
+//! Inside, [`compile`](compile()) checks a text and lowers it into a solver graph, [`execute`] runs the graph by its
+//! schedule, [`results`] keeps what came out and [`report`] shows it. The modules below stand in the order of that
+//! flow; each knows only what stands before it.
 
 pub mod diag;
 pub mod units;

@@ -1,4 +1,5 @@
-//! Files that are not what they seem, and outputs that take nothing: refused with a reason, never followed, never waited for.
+//! Files that are not what they seem, and outputs that take nothing: refused with a reason, never followed, never
+//! waited for.
 #![cfg(unix)]
 
 use std::fs;

@@ -1,5 +1,5 @@
-//! Pages as a reader sees them, in a real browser without a window: nothing is cut on a phone, no picture is empty, and the script
-//! does what it says. Where no Chromium is installed the tests say so and look at nothing.
+//! Pages as a reader sees them, in a real browser without a window: nothing is cut on a phone, no picture is empty, and
+//! the script does what it says. Where no Chromium is installed the tests say so and look at nothing.
 
 use serde_json::Value;
 use std::ffi::OsStr;
@@ -52,7 +52,8 @@ fn browse(chromium: &Path, page: &Path, width: u32, more: &[&OsStr]) -> (String,
     (String::from_utf8_lossy(&output.stdout).into_owned(), errors.map(str::to_owned).collect())
 }
 
-/// What the probe finds on a page that is so many pixels wide: in a frame, since a window cannot be as narrow as a phone.
+/// What the probe finds on a page that is so many pixels wide: in a frame, since a window cannot be as narrow as a
+/// phone.
 fn look(chromium: &Path, page: &Path, width: u32) -> Value {
     let text = fs::read_to_string(page).unwrap();
     let text = text.replacen("<head>", &format!("<head>{LISTEN}"), 1);
@@ -99,7 +100,8 @@ fn written(directory: &Path, name: &str, text: &str) -> String {
     path.display().to_string()
 }
 
-/// A short transition with layers, a wedge, an approach slab, pads under sleepers, two laws, a mix of trains and expectations.
+/// A short transition with layers, a wedge, an approach slab, pads under sleepers, two laws, a mix of trains and
+/// expectations.
 const SCENE: &str = r#"use std
 scenario { title = "A page with `everything`", allow = [
   stiffness_jump: "small", track_too_short: "small: `track` is short", critical_speed: "small", wheel_on_track: "small", passing_frequency: "small"

@@ -1,4 +1,5 @@
-//! `trackbed calibrate` as a person uses it: known parameters come back, and every bad curve or wish is told with its place.
+//! `trackbed calibrate` as a person uses it: known parameters come back, and every bad curve or wish is told with its
+//! place.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};

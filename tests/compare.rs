@@ -1,4 +1,5 @@
-//! `trackbed compare` on directories that the program has written: runs, tests of rigs, studies, and what cannot be compared.
+//! `trackbed compare` on directories that the program has written: runs, tests of rigs, studies, and what cannot be
+//! compared.
 
 use serde_json::Value;
 use std::fs;

@@ -1,4 +1,5 @@
-//! Grains between and beside sleepers, `crib` and `shoulder`: what a scene may say, what its plan holds, and that a rig with them runs.
+//! Grains between and beside sleepers, `crib` and `shoulder`: what a scene may say, what its plan holds, and that a rig
+//! with them runs.
 
 use trackbed::check::NoModules;
 use trackbed::diag::{Code, Diagnostic};

@@ -1,5 +1,5 @@
-//! The documents are true: their scenes check, their commands are understood and the quick ones run, and the reference page is that
-//! of this vocabulary.
+//! The documents are true: their scenes check, their commands are understood and the quick ones run, and the reference
+//! page is that of this vocabulary.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! The language server through its protocol: a client process opens scenes, types them character by character, damages them, and asks.
+//! The language server through its protocol: a client process opens scenes, types them character by character, damages
+//! them, and asks.
 
 use serde_json::{Value, json};
 use std::fs;

@@ -82,7 +82,8 @@ fn codes(compiled: &Compiled) -> Vec<Code> {
     compiled.diagnostics.iter().map(|d| d.code).collect()
 }
 
-/// What a text of a page gives; rules of grains need scenes that this version only checks, which is not what they are about.
+/// What a text of a page gives; rules of grains need scenes that this version only checks, which is not what they are
+/// about.
 fn found(page: Code, compiled: &Compiled) -> Vec<&Diagnostic> {
     let waits = |d: &Diagnostic| page.rule().is_some() && d.code == Code::E0604;
     compiled.diagnostics.iter().filter(|d| !waits(d)).collect()

@@ -1,5 +1,5 @@
-//! The extension for Visual Studio Code packs, as far as this machine has npm. It installs some hundred packages and takes minutes, so it
-//! runs when it is asked for: `cargo test --test extension -- --ignored --nocapture`.
+//! The extension for Visual Studio Code packs, as far as this machine has npm. It installs some hundred packages and
+//! takes minutes, so it runs when it is asked for: `cargo test --test extension -- --ignored --nocapture`.
 
 use std::fs;
 use std::path::Path;

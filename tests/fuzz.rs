@@ -1,4 +1,5 @@
-//! What broke the parser, the formatter, the checker or a reader of files once, and some texts and files that nobody would write.
+//! What broke the parser, the formatter, the checker or a reader of files once, and some texts and files that nobody
+//! would write.
 
 #[path = "../fuzz/bytes.rs"]
 mod bytes;

@@ -1,5 +1,5 @@
-//! Settlement laws from the text to the run: what the words mean, several laws under the same forces, and a law under which
-//! nothing settles.
+//! Settlement laws from the text to the run: what the words mean, several laws under the same forces, and a law under
+//! which nothing settles.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -160,7 +160,8 @@ fn followers_settle_under_the_forces_of_the_first_law() {
     assert_eq!(one.tables.sleepers, both.tables.sleepers);
     assert!(one.tables.laws.is_empty());
 
-    // its rows are those of the sleepers, and the scalars those of the rows; all wheels pass the last metres of this short track
+    // its rows are those of the sleepers, and the scalars those of the rows; all wheels pass the last metres of this
+    // short track
     let of = |law: &str, name: &str| {
         rows.iter().rfind(|r| r.law == law && r.sleeper == name).map(|r| r.settlement_m).unwrap()
     };

@@ -1,5 +1,5 @@
-//! Layers that carry sleepers: what the stack under a seat makes of its support, what stretches and approach slabs change of
-//! it, and what cannot be.
+//! Layers that carry sleepers: what the stack under a seat makes of its support, what stretches and approach slabs
+//! change of it, and what cannot be.
 
 use trackbed::check::NoModules;
 use trackbed::diag::Code;

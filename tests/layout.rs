@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Floors of the folders of `src/`; one imports from lower floors and its own folder only. `lib.rs` stands above all of them.
+/// Floors of the folders of `src/`; one imports from lower floors and its own folder only. `lib.rs` stands above all of
+/// them.
 const FLOORS: &[(&str, u32)] = &[
     ("diag", 0),
     ("units", 0),
@@ -188,6 +189,22 @@ fn files_hold_one_idea() {
 }
 
 /// The name of a function alone does not say what `Length::of` or `profile.at` gives.
+/// Comments can be read beside a page of code: rustfmt leaves them as they are.
+#[test]
+fn comments_are_not_wider_than_code() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = ["src", "tests", "examples", "benches", "fuzz"];
+    let mut wide = Vec::new();
+    for path in folders.iter().flat_map(|folder| sources(&root.join(folder))) {
+        let text = fs::read_to_string(&path).unwrap();
+        let comments = text.lines().enumerate().filter(|(_, line)| line.trim_start().starts_with("//"));
+        // tables and addresses cannot be broken
+        let breakable = comments.filter(|(_, line)| !line.contains("| ") && !line.contains("://"));
+        wide.extend(breakable.filter(|(_, line)| line.chars().count() > 120).map(|(row, _)| format!("{}:{}", path.display(), row + 1)));
+    }
+    assert!(wide.is_empty(), "comments of more than 120 columns:\n{}", wide.join("\n"));
+}
+
 #[test]
 fn names_say_what_they_are() {
     for path in sources(Path::new("src")) {
@@ -212,7 +229,8 @@ fn names_say_what_they_are() {
     }
 }
 
-/// Files import each other in one direction, so that each can be read on its own. Parts of one module (`mod.rs` and its files) are read together.
+/// Files import each other in one direction, so that each can be read on its own. Parts of one module (`mod.rs` and its
+/// files) are read together.
 #[test]
 fn files_have_no_circles() {
     let files: Vec<PathBuf> = sources(Path::new("src"));

@@ -1,5 +1,5 @@
-//! Layers, gradings, granular materials and soils: what the text says is what the scene holds, and what only grains can run
-//! is checked and not run.
+//! Layers, gradings, granular materials and soils: what the text says is what the scene holds, and what only grains can
+//! run is checked and not run.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -21,10 +21,10 @@ struct Planted {
     below: isize,
     /// What nobody knows any more: `p`laces along the track, the `v`ehicle, the `t`rain, what uses the `b`ay or the
     /// stiffness of the pads, `k`, the trackform with the slab, `f`,
-    /// which `c`ar runs at all, which `s`ections there are, the `g`rains and the ground of their layers, the `l`ength of sleepers,
-    /// what the b`a`y is, which st`r`etches there are, where they lie and what they set, `x`, what one of them changes, `y`, what the
-    /// study asks, `q`, the number of the pads' stiffness, `z`,
-    /// when the track is tamped, `m`.
+    /// which `c`ar runs at all, which `s`ections there are, the `g`rains and the ground of their layers, the `l`ength
+    /// of sleepers, what the b`a`y is, which st`r`etches there are, where they lie and what they set, `x`, what one of
+    /// them changes, `y`, what the study asks, `q`, the number of the pads' stiffness, `z`, when the track is tamped,
+    /// `m`.
     breaks: &'static str,
     /// What must be known for the mistake to be seen; `*` is everything.
     needs: &'static str,

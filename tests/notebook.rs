@@ -1,5 +1,5 @@
-//! The notebooks of `examples/notebook` read what a run and a bed leave. They need Python with what `requirements.txt` there names:
-//! `.ci/run` puts it into `target/notebook`. Where it is missing the tests say so and run nothing.
+//! The notebooks of `examples/notebook` read what a run and a bed leave. They need Python with what `requirements.txt`
+//! there names: `.ci/run` puts it into `target/notebook`. Where it is missing the tests say so and run nothing.
 
 use serde_json::Value;
 use std::fs;

@@ -197,7 +197,8 @@ fn all_of_it_at_once() {
     );
 }
 
-/// A bench under a jack of 100 kN, its state of rest with gravity or without; what is recorded of its seats, and its scalars.
+/// A bench under a jack of 100 kN, its state of rest with gravity or without; what is recorded of its seats, and its
+/// scalars.
 fn jacked(gravity: &str, support: &str) -> trackbed::results::Run {
     let text = format!(
         "use std

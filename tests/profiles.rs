@@ -1,5 +1,5 @@
-//! Values that vary along the track, from the text to the seats: what a ramp, a list and a file mean, and what becomes of
-//! under sleeper pads, initial settlement and the rest of the track's physics.
+//! Values that vary along the track, from the text to the seats: what a ramp, a list and a file mean, and what becomes
+//! of under sleeper pads, initial settlement and the rest of the track's physics.
 
 use std::collections::BTreeMap;
 use std::path::Path;

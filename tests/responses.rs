@@ -1,5 +1,5 @@
-//! Expressions of responses: what each reduction and function is of, what is said against those that are none, and that a run
-//! answers them.
+//! Expressions of responses: what each reduction and function is of, what is said against those that are none, and that
+//! a run answers them.
 
 use std::path::Path;
 use trackbed::check::Modules;

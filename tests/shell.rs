@@ -1,4 +1,5 @@
-//! The program in a shell: completions, manual pages, help with examples, quiet and strict commands, standard input, colour.
+//! The program in a shell: completions, manual pages, help with examples, quiet and strict commands, standard input,
+//! colour.
 
 use std::fs;
 use std::io::Write;
@@ -27,7 +28,11 @@ fn code(output: &Output) -> Option<i32> {
 fn commands() -> Vec<String> {
     let help = out(&trackbed(&["--help"]));
     let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
-    listed.filter(|line| line.starts_with("  ") && !line.starts_with("   ")).filter_map(|line| line.split_whitespace().next()).map(str::to_string).collect()
+    listed
+        .filter(|line| line.starts_with("  ") && !line.starts_with("   "))
+        .filter_map(|line| line.split_whitespace().next())
+        .map(str::to_string)
+        .collect()
 }
 
 #[test]
@@ -40,7 +45,7 @@ fn every_help_has_examples_that_are_understood() {
         assert!(!examples.is_empty(), "{name} has no examples:\n{help}");
         let mut seen = 0;
         for line in examples.iter().filter_map(|line| line.trim().strip_prefix("trackbed ")) {
-            let line = line.split([ '>', '<', '|', '&']).next().unwrap_or_default();
+            let line = line.split(['>', '<', '|', '&']).next().unwrap_or_default();
             let parts = line.split('\'').enumerate().flat_map(|(i, part)| match i % 2 {
                 0 => part.split_whitespace().map(str::to_string).collect::<Vec<_>>(),
                 _ => vec![part.to_string()],
@@ -63,7 +68,9 @@ fn shells_complete_every_command() {
     }
     // a shell reads its script, and completes with it
     let script = out(&trackbed(&["completions", "bash"]));
-    let ask = format!("{script}\nCOMP_WORDS=(trackbed resol)\nCOMP_CWORD=1\n_trackbed trackbed resol trackbed\nprintf '%s' \"${{COMPREPLY[*]}}\"");
+    let ask = format!(
+        "{script}\nCOMP_WORDS=(trackbed resol)\nCOMP_CWORD=1\n_trackbed trackbed resol trackbed\nprintf '%s' \"${{COMPREPLY[*]}}\""
+    );
     let shell = Command::new("bash").args(["--norc", "-c", &ask]).output().unwrap();
     assert_eq!(out(&shell), "resolve", "{}", String::from_utf8_lossy(&shell.stderr));
 }

@@ -1,4 +1,5 @@
-//! Which side of a transition is the softer one: offered where it is missing, warned of where the ground says otherwise.
+//! Which side of a transition is the softer one: offered where it is missing, warned of where the ground says
+//! otherwise.
 
 use trackbed::check::NoModules;
 use trackbed::diag::{Code, Diagnostic, render};

@@ -1,4 +1,5 @@
-//! What a railway engineer types at first: each slip gives one diagnostic at its line, with what to write instead, and nothing else.
+//! What a railway engineer types at first: each slip gives one diagnostic at its line, with what to write instead, and
+//! nothing else.
 
 use std::path::Path;
 use trackbed::check::{Modules, NoModules};

@@ -1,4 +1,5 @@
-//! Scenes drawn at random from the schema: every field of the vocabulary takes part, most scenes are sound, and none breaks the program.
+//! Scenes drawn at random from the schema: every field of the vocabulary takes part, most scenes are sound, and none
+//! breaks the program.
 
 #[path = "../fuzz/dice.rs"]
 mod dice;

@@ -53,7 +53,8 @@ fn stiffness(formulation: Formulation, size: f64) -> f64 {
     4.0 * force * loaded.len() as f64 / mean
 }
 
-/// Elements of 0.05 m are within 1 % of waves on layers (2 % mixed), and so is what they and those of 0.1 m say of none.
+/// Elements of 0.05 m are within 1 % of waves on layers (2 % mixed), and so is what they and those of 0.1 m say of
+/// none.
 #[test]
 fn a_rectangle_on_layers_sinks_as_waves_say() {
     let layer = |(thickness, material): (f64, Material)| Layer {

@@ -1,5 +1,5 @@
-//! Spacing that varies by places, from a file and at random: seats are laid one after another, each bay as long as the spacing at the
-//! sleeper that it leads away from, and what cannot be laid is refused.
+//! Spacing that varies by places, from a file and at random: seats are laid one after another, each bay as long as the
+//! spacing at the sleeper that it leads away from, and what cannot be laid is refused.
 
 use std::path::Path;
 use trackbed::check::{DataError, Modules, NoModules};

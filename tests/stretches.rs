@@ -1,5 +1,5 @@
-//! Stretches: what a span of the track says reaches its seats and nothing else, what cannot be is refused, and each mitigation
-//! does to the track what it is there for.
+//! Stretches: what a span of the track says reaches its seats and nothing else, what cannot be is refused, and each
+//! mitigation does to the track what it is there for.
 
 use trackbed::check::NoModules;
 use trackbed::diag::Code;

@@ -1,4 +1,5 @@
-//! Studies: what is wrong with them is told before anything runs; they run, are killed, go on, and say which design is best.
+//! Studies: what is wrong with them is told before anything runs; they run, are killed, go on, and say which design is
+//! best.
 
 use std::collections::HashMap;
 use std::fs;

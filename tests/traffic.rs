@@ -1,4 +1,5 @@
-//! Mixes of trains: their shares and order, what they do to the track together, and what is said against a mix that is none.
+//! Mixes of trains: their shares and order, what they do to the track together, and what is said against a mix that is
+//! none.
 
 use trackbed::check::NoModules;
 use trackbed::diag::{Code, render};

@@ -1,5 +1,5 @@
-//! The update interval: what a block of axles may be worth, what becomes of one that is too long, and that nothing of a run
-//! hangs on where it stopped or on how many threads it had.
+//! The update interval: what a block of axles may be worth, what becomes of one that is too long, and that nothing of a
+//! run hangs on where it stopped or on how many threads it had.
 
 use trackbed::check::NoModules;
 use trackbed::execute;

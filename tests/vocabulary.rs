@@ -24,12 +24,16 @@ fn a_module_lists_its_entries_and_an_entry_its_numbers() {
         assert!(module.contains(entry), "{module}");
     }
     let entry = told(&["usps.medium"]);
-    for part in ["bedding_modulus = 0.20 N/mm^3", "evidence: unchecked", "source: middle of the class", "usps.medium {"] {
+    for part in ["bedding_modulus = 0.20 N/mm^3", "evidence: unchecked", "source: middle of the class", "usps.medium {"]
+    {
         assert!(entry.contains(part), "{part} is missing:\n{entry}");
     }
     // what it extends is there too
     let wagon = told(&["vehicles.ore_wagon_20t"]);
-    assert!(wagon.contains("axle_load = 20 t") && wagon.contains("ore_wagon_30t") && wagon.contains("spacing = 6.77 m"), "{wagon}");
+    assert!(
+        wagon.contains("axle_load = 20 t") && wagon.contains("ore_wagon_30t") && wagon.contains("spacing = 6.77 m"),
+        "{wagon}"
+    );
 }
 
 #[test]
@@ -53,7 +57,8 @@ fn a_word_finds_kinds_fields_the_library_and_codes() {
         assert!(sleepers.contains(heading), "{heading} is missing:\n{sleepers}");
     }
     let names = data(&["bedding"]);
-    let names: Vec<&str> = names["found"].as_array().unwrap().iter().filter_map(|topic| topic["name"].as_str()).collect();
+    let names: Vec<&str> =
+        names["found"].as_array().unwrap().iter().filter_map(|topic| topic["name"].as_str()).collect();
     assert!(names.contains(&"bedding_modulus"), "{names:?}");
 }
 

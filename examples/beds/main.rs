@@ -4,12 +4,12 @@
 //! beds cell [seed]             every stage of the paper's cell, as it ended
 //! beds track BAYS [CELLS]      copies of it, or of so many cells, side by side and at rest
 //! beds seeds COUNT             coordination and porosity over seeds, with their scatter
-//! beds readings [WORD]         both readings of the paper's contact stiffness and of its count of grains, and friction while packed
+//! beds readings [WORD]         both readings of the paper's contact stiffness and count of grains; friction in packing
 //! beds accuracy [WORD]         criterion, pressure, lifts, pebbles and length of the cell against time
 //! ```
 //!
-//! With a word only cases that have it in their name. Tables are CSV on standard output; what it does meanwhile stands on standard error. The last three pack as many cells at a time as there are
-//! cores, each with a core of its own.
+//! With a word only cases that have it in their name. Tables are CSV on standard output; what it does meanwhile stands
+//! on standard error. The last three pack as many cells at a time as there are cores, each with a core of its own.
 
 use std::time::Instant;
 use trackbed::nodes::turns;

@@ -57,7 +57,8 @@ fn gather(root: &Path, folder: &Path, files: &mut BTreeMap<PathBuf, File>) -> io
         } else {
             String::new()
         };
-        let local = |target: &String| !target.contains("://") && !target.starts_with("mailto:") && !target.starts_with("data:");
+        let local =
+            |target: &String| !target.contains("://") && !target.starts_with("mailto:") && !target.starts_with("data:");
         let targets = [attributes(&text, " href=\""), attributes(&text, " src=\"")].concat();
         let targets = targets.into_iter().filter(local).filter(|target| !target.is_empty()).collect();
         let anchors = attributes(&text, " id=\"").into_iter().collect();
@@ -68,7 +69,11 @@ fn gather(root: &Path, folder: &Path, files: &mut BTreeMap<PathBuf, File>) -> io
 
 /// The values of an attribute.
 fn attributes(text: &str, start: &str) -> Vec<String> {
-    text.split(start).skip(1).filter_map(|rest| rest.split_once('"')).map(|(value, _)| value.replace("&amp;", "&")).collect()
+    text.split(start)
+        .skip(1)
+        .filter_map(|rest| rest.split_once('"'))
+        .map(|(value, _)| value.replace("&amp;", "&"))
+        .collect()
 }
 
 /// The place to which a relative path leads from a page.

@@ -1,4 +1,5 @@
-//! The pages of the book, as Markdown for mdBook. They lie as the documents lie in the project, so that links between documents hold.
+//! The pages of the book, as Markdown for mdBook. They lie as the documents lie in the project, so that links between
+//! documents hold.
 
 use std::fs;
 use std::io;
@@ -16,7 +17,8 @@ enum Line {
     Page(usize, String, String),
 }
 
-/// Documents of each part, in the order in which they are read; those that are not listed here follow under the last part.
+/// Documents of each part, in the order in which they are read; those that are not listed here follow under the last
+/// part.
 const GUIDE: [&str; 8] = ["tutorial", "language", "report", "files", "mitigations", "grains", "editor", "shell"];
 const EVIDENCE: [&str; 5] = ["validation", "statements", "readings", "faults", "soak"];
 
@@ -162,7 +164,9 @@ impl Book<'_> {
             self.put(&format!("scenarios/{stem}.svg"), &report::drawing_svg(scenario))?;
             page += &format!("![The scene to scale]({stem}.svg)\n\n");
         }
-        page += &format!("```sh\ntrackbed {command} scenarios/{stem}.track --out out\n```\n\n[The file]({stem}.track):\n\n");
+        page += &format!(
+            "```sh\ntrackbed {command} scenarios/{stem}.track --out out\n```\n\n[The file]({stem}.track):\n\n"
+        );
         Ok(page + &format!("```text\n{text}```\n"))
     }
 
@@ -185,7 +189,12 @@ impl Book<'_> {
     /// Every module of the standard library.
     fn modules(&mut self) -> io::Result<()> {
         let list: String = LIBRARY.iter().map(|(module, _)| format!("- [`{module}`]({module}.md)\n")).collect();
-        self.page(0, "Standard library", "library/index.md", &format!("# Standard library\n\n{LIBRARY_USE}\n\n{list}"))?;
+        self.page(
+            0,
+            "Standard library",
+            "library/index.md",
+            &format!("# Standard library\n\n{LIBRARY_USE}\n\n{list}"),
+        )?;
         let entries = library();
         for (module, _) in LIBRARY {
             let own = entries.iter().filter(|entry| entry.module == *module);
@@ -259,7 +268,9 @@ fn objects(form: &Form) -> Vec<&'static str> {
 
 fn entry_section(entry: &Entry) -> String {
     let base = entry.base.as_ref().map_or(String::new(), |base| format!("\nIt extends `{base}`.\n"));
-    let row = |(path, value): &(String, String)| format!("| `{path}` | `{}` |\n", value.replace('|', "\\|").replace('\n', " "));
+    let row = |(path, value): &(String, String)| {
+        format!("| `{path}` | `{}` |\n", value.replace('|', "\\|").replace('\n', " "))
+    };
     let rows: String = entry.fields.iter().map(row).collect();
     format!(
         "## {0}.{1}\n\n{2}\n{base}\n[`{3}`](../reference/{3}.md) | value\n---|---\n{rows}\nEvidence: {4}. Source: {5}.\n\n",

@@ -80,7 +80,8 @@ impl<'a> Subject<'a> {
         let _ = Command::new("pkill").args(["-KILL", "--oldest", "--full", &words]).status();
     }
 
-    /// Lets it go on for so long (s), asks it to stop, and gives the seconds until it has; `None` where it had ended before.
+    /// Lets it go on for so long (s), asks it to stop, and gives the seconds until it has; `None` where it had ended
+    /// before.
     pub fn stop(&self, after: f64, signal: &str) -> Result<Option<f64>, String> {
         let mut child = self.start()?;
         sleep(Duration::from_secs_f64(after));

@@ -1,5 +1,6 @@
-//! Kills the program at random moments, lets it go on until it has ended, and compares all that it wrote with what it writes when
-//! nobody kills it. Between kills it is asked to stop, as Ctrl-C and schedulers do, and the time that it takes is measured.
+//! Kills the program at random moments, lets it go on until it has ended, and compares all that it wrote with what it
+//! writes when nobody kills it. Between kills it is asked to stop, as Ctrl-C and schedulers do, and the time that it
+//! takes is measured.
 //!
 //!     cargo run --release --example faults -- 1000 [SEED] [TIER]
 //!     tests/slurm/cluster.sh cargo run --release --example faults -- 1000

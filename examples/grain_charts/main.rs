@@ -4,10 +4,10 @@
 //! cargo run --release --example grain_charts -- docs/charts
 //! ```
 //!
-//! A periodic bed of 200 grains at rest is loaded by a plate from 5 to 50 kPa and unloaded, once for each seed. Every setting is
-//! compared with a reference of the same seeds (`f64`, a twentieth of the stable step, of clumps a tenth); the scatter of the reference over its
-//! seeds is the band below which an error does not matter. Takes about six minutes; `--redraw` draws the table that is there
-//! again. Writes `grains_accuracy.csv` and `grains_accuracy.svg`.
+//! A periodic bed of 200 grains at rest is loaded by a plate from 5 to 50 kPa and unloaded, once for each seed. Every
+//! setting is compared with a reference of the same seeds (`f64`, a twentieth of the stable step, of clumps a tenth);
+//! the scatter of the reference over its seeds is the band below which an error does not matter. Takes about six
+//! minutes; `--redraw` draws the table that is there again. Writes `grains_accuracy.csv` and `grains_accuracy.svg`.
 
 mod chart;
 mod cycle;

@@ -1,4 +1,5 @@
-//! Panels: settlement and stiffness against wall time, one setting changed in each, with the scatter of packings as a band.
+//! Panels: settlement and stiffness against wall time, one setting changed in each, with the scatter of packings as a
+//! band.
 
 use super::Row;
 use super::test::Answer;
@@ -7,7 +8,8 @@ use std::fmt::Write as _;
 const WIDTH: f64 = 1180.0;
 const HEIGHT: f64 = 1140.0;
 const PANEL: (f64, f64) = (320.0, 250.0);
-/// Ends of a vertical axis, over the mean of the usual setting, as powers of two: of most panels, and of a setting that changes more.
+/// Ends of a vertical axis, over the mean of the usual setting, as powers of two: of most panels, and of a setting that
+/// changes more.
 const ENDS: [f64; 2] = [-2.0, 3.0];
 const WIDE: [f64; 2] = [-8.0, 4.0];
 const HIGH: [f64; 2] = [-2.0, 6.0];

@@ -1,11 +1,13 @@
-//! What accuracy of a box test costs: pebbles a grain, particle scale, time step, packing friction, pressure and criterion, length of the cell.
+//! What accuracy of a box test costs: pebbles a grain, particle scale, time step, packing friction, pressure and
+//! criterion, length of the cell.
 //!
 //! ```sh
 //! cargo run --release --example rig_charts -- docs/charts
 //! ```
 //!
-//! A sleeper on 0.3 m of ballast under ten cycles, on packings of several seeds for every setting, two at a time with a core each. About
-//! half an hour; `--redraw` draws the table that is there again. Writes `rig_accuracy.csv`, a row for each test, and `rig_accuracy.svg`.
+//! A sleeper on 0.3 m of ballast under ten cycles, on packings of several seeds for every setting, two at a time with a
+//! core each. About half an hour; `--redraw` draws the table that is there again. Writes `rig_accuracy.csv`, a row for
+//! each test, and `rig_accuracy.svg`.
 
 mod chart;
 mod table;

@@ -1,5 +1,5 @@
-//! Scenes drawn at random from the schema, checked and run: they end, in numbers that are finite, without a panic and within a bounded
-//! memory.
+//! Scenes drawn at random from the schema, checked and run: they end, in numbers that are finite, without a panic and
+//! within a bounded memory.
 //!
 //! ```sh
 //! cargo run --release --example soak -- check 100000

@@ -24,7 +24,9 @@ pub use stated::Stated;
 pub use survey::{Content, Files, Held, Object, Survey, survey, surveyed_names};
 pub use text::library::{Entry, MODULES as LIBRARY, library};
 pub use text::measured::{MeasuredCurve, measured_curve};
-pub use text::modules::{DataError, Folder, LARGEST_DATA_FILE, Modules, NoModules, Parsed, Remembered, read_all, read_bounded};
+pub use text::modules::{
+    DataError, Folder, LARGEST_DATA_FILE, Modules, NoModules, Parsed, Remembered, read_all, read_bounded,
+};
 pub use text::overrides::{EDIT, Override};
 pub use text::scope::{ItemId, Scope, ScopeId};
 

@@ -32,7 +32,8 @@ enum What {
     Scene(SceneSteps),
 }
 
-/// Steps of the grains of a scene under its first train, with the rail over them and the soil below, and where their time goes
+/// Steps of the grains of a scene under its first train, with the rail over them and the soil below, and where their
+/// time goes
 ///
 /// The beds are packed, or taken from where they are kept, laid and brought to rest first; that is not timed.
 #[derive(clap::Args)]
@@ -45,7 +46,8 @@ struct SceneSteps {
     /// Steps that are timed.
     #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     steps: u64,
-    /// Also runs the first passage whole, with an account of its energy: what rail, grains and soil lose, and what no part explains
+    /// Also runs the first passage whole, with an account of its energy: what rail, grains and soil lose, and what no
+    /// part explains
     #[arg(long)]
     energy: bool,
     /// Also lets the track lie for a second without a train and tells how far its sleepers move

@@ -26,7 +26,8 @@ pub(super) struct Arguments {
     /// CSV file with the columns `axles` and `settlement_mm` (or another unit).
     #[arg(long, value_name = "CSV")]
     measured: PathBuf,
-    /// The peak force of every wheel on the support of a half sleeper, e.g. '40 kN'; by default that of one passage of the scene.
+    /// The peak force of every wheel on the support of a half sleeper, e.g. '40 kN'; by default that of one passage of
+    /// the scene.
     #[arg(long, value_name = "FORCE", value_parser = force)]
     seat_load: Option<f64>,
     /// The sleeper whose wheel peaks act, e.g. -20; by default the one farthest from every transition.

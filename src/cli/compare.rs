@@ -2,7 +2,6 @@
 
 use super::{Format, Outcome, compare_summary, stored, subject, terminal};
 use crate::compare::Comparison;
-use crate::diag::render;
 use crate::report::comparison_page;
 use crate::store::{Directory, Finished, Mode, StoreError, Work, sha256};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! What `trackbed compare` prints: what differs in the scenes, the numbers side by side, and where along the track they part.
+//! What `trackbed compare` prints: what differs in the scenes, the numbers side by side, and where along the track they
+//! part.
 
 use super::terminal::aligned;
 use crate::compare::{Column, Comparison, Difference, NumberRow, PointRow, is_named};

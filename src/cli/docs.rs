@@ -18,12 +18,14 @@ use serde_json::{Value, json};
   trackbed docs --search sleeper
   trackbed docs usps --format json")]
 pub(super) struct Arguments {
-    /// The name of a kind, field, module, library entry, response or code, else a word to search for; all kinds if it is left out
+    /// The name of a kind, field, module, library entry, response or code, else a word to search for; all kinds if it
+    /// is left out
     name: Option<String>,
     /// Search for words in the names and meanings of all kinds, fields, library entries, responses and codes
     #[arg(long, value_name = "WORDS", conflicts_with = "name")]
     search: Option<String>,
-    /// `markdown` writes the whole reference, or the section of one kind; `textmate` writes the grammar for colours in editors
+    /// `markdown` writes the whole reference, or the section of one kind; `textmate` writes the grammar for colours in
+    /// editors
     #[arg(long, value_enum, default_value = "human")]
     format: DocsFormat,
 }
@@ -95,7 +97,8 @@ fn human(asked: &Asked) -> String {
 }
 
 /// What to write next.
-const HINT: &str = "`trackbed docs NAME` describes a kind (`sleeper`), a field (`usp.bedding_modulus`), a module of the standard
+const HINT: &str =
+    "`trackbed docs NAME` describes a kind (`sleeper`), a field (`usp.bedding_modulus`), a module of the standard
 library (`usps`), one of its entries (`usps.medium`) or a response (`settlement`).
 `trackbed docs WORD` searches for any other word.
 ";

@@ -1,4 +1,5 @@
-//! Ctrl-C, SIGTERM, SIGHUP and memory that runs out: the first asks a run to keep what it has and to stop, the second ends the program.
+//! Ctrl-C, SIGTERM, SIGHUP and memory that runs out: the first asks a run to keep what it has and to stop, the second
+//! ends the program.
 
 use super::terminal;
 use std::sync::Once;

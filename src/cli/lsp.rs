@@ -12,7 +12,8 @@ pub(super) struct Arguments {
     /// What editors say by habit: standard input and output are used in any case.
     #[arg(long, hide = true)]
     stdio: bool,
-    /// Where the standard library is laid down so that the editor can show it; a folder for caches where it is left out.
+    /// Where the standard library is laid down so that the editor can show it; a folder for caches where it is left
+    /// out.
     #[arg(long, value_name = "FOLDER")]
     library: Option<PathBuf>,
 }

@@ -1,4 +1,5 @@
-//! Whether a run fits into its memory: asked of the plan before anything is allocated, and of the system while it goes on.
+//! Whether a run fits into its memory: asked of the plan before anything is allocated, and of the system while it goes
+//! on.
 
 use super::interrupt;
 use crate::diag::{Code, Diagnostic};
@@ -35,8 +36,8 @@ impl MemoryArgument {
         }
     }
 
-    /// From now on a run is stopped where it takes more than its scene allows, or nearly all that this machine has; a study where it
-    /// takes nearly all.
+    /// From now on a run is stopped where it takes more than its scene allows, or nearly all that this machine has; a
+    /// study where it takes nearly all.
     pub fn watch(self, scenario: Option<&Scenario>) {
         let Some(process) = sysinfo::get_current_pid().ok().filter(|_| !self.over_memory) else { return };
         let mut system = System::new();

@@ -27,7 +27,9 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         OpenOptions::new().write(true).create_new(true).open(&path).and_then(|mut f| f.write_all(TEMPLATE.as_bytes()));
     match written {
         Ok(()) => {
-            terminal::summary(&format!("wrote {name}\nnext: trackbed check {name}\n      trackbed run {name} --out out\n"));
+            terminal::summary(&format!(
+                "wrote {name}\nnext: trackbed check {name}\n      trackbed run {name} --out out\n"
+            ));
             Outcome::Fine
         }
         Err(error) => {

@@ -53,7 +53,8 @@ pub(super) fn set(bar: &ProgressBar, done: u64, all: u64) {
 /// Between two lines where there is no terminal.
 const LINE: Duration = Duration::from_secs(60);
 
-/// A bar that waits until the work has taken two seconds; what is quick needs none. Without a terminal a line from time to time.
+/// A bar that waits until the work has taken two seconds; what is quick needs none. Without a terminal a line from time
+/// to time.
 pub(super) struct Patient {
     message: Cow<'static, str>,
     start: Instant,

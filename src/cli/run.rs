@@ -212,7 +212,8 @@ fn to_the_last_axle(arguments: &Arguments, running: &Running<'_>) -> Result<(), 
     run_elsewhere::computed(&arguments.out).map_err(|error| stop(compiled, stored::diagnostic(&error)))
 }
 
-/// Runs the scene of a track on grains on the further packings that it asks for, each in a directory of its own below that of the run.
+/// Runs the scene of a track on grains on the further packings that it asks for, each in a directory of its own below
+/// that of the run.
 fn further_packings(arguments: &Arguments, running: &Running<'_>) -> Result<(), Outcome> {
     let solve = &running.scenario.solve;
     let further = if running.graph.has_grains_under_track() { solve.grains.repeats - 1 } else { 0 };
@@ -479,7 +480,8 @@ fn summary(run: &Run, page: &Path, seconds: f64) {
     terminal::summary(&out);
 }
 
-/// A line for each scalar that there is, in its unit. Its band of confidence or its scatter over packings follows where it has one.
+/// A line for each scalar that there is, in its unit. Its band of confidence or its scatter over packings follows where
+/// it has one.
 fn headline(out: &mut String, scalars: &BTreeMap<String, Scalar>, lines: &[Label]) {
     for Label { name, text, unit, size } in lines {
         let rounded = |value: f64| number((value / size * 1e4).round() / 1e4);

@@ -40,8 +40,8 @@ pub(super) struct Arguments {
     /// The directory for results; made where it does not exist.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Points at a time; all cores where it is not given, and all that the cluster allows with `--executor slurm`. The results do not
-    /// depend on it.
+    /// Points at a time; all cores where it is not given, and all that the cluster allows with `--executor slurm`. The
+    /// results do not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Go on where an interrupted study of the same scene stopped.

@@ -1,5 +1,5 @@
-//! What `trackbed study` prints at its end: a table that begins with the scene as it is, the best designs, and what stands against
-//! the answer.
+//! What `trackbed study` prints at its end: a table that begins with the scene as it is, the best designs, and what
+//! stands against the answer.
 
 use super::terminal;
 use crate::diag::{Code, Diagnostic};

@@ -1,5 +1,5 @@
-//! The tables of a comparison, for spreadsheets: `numbers.csv`, `seats.csv`, `points.csv` and `scenes.csv`. Values are SI, but in
-//! `points.csv`, which keeps the units of the studies.
+//! The tables of a comparison, for spreadsheets: `numbers.csv`, `seats.csv`, `points.csv` and `scenes.csv`. Values are
+//! SI, but in `points.csv`, which keeps the units of the studies.
 
 use super::{Comparison, Difference, NumberRow};
 

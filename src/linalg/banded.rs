@@ -1,9 +1,10 @@
-//! Symmetric banded matrices: products, `L D Lᵀ` without pivoting, and columns of the inverse where they are not negligible.
+//! Symmetric banded matrices: products, `L D Lᵀ` without pivoting, and columns of the inverse where they are not
+//! negligible.
 //!
-//! The matrix is stored by diagonals, which makes a product a few straight runs through memory. The factor is stored by rows
-//! of `width` entries beside the diagonal, oldest column first, so that a solve runs through memory once forward and once
-//! back with the last `width` unknowns in registers. The width is the half band rounded up to one that has an unrolled
-//! kernel; the entries added are zeros.
+//! The matrix is stored by diagonals, which makes a product a few straight runs through memory. The factor is stored by
+//! rows of `width` entries beside the diagonal, oldest column first, so that a solve runs through memory once forward
+//! and once back with the last `width` unknowns in registers. The width is the half band rounded up to one that has an
+//! unrolled kernel; the entries added are zeros.
 
 /// A symmetric matrix of which only the entries with `|i - j| <= half_band` differ from zero.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,8 @@
-//! Sparse symmetric positive definite systems: Cholesky's factorisation with an ordering of little fill. The only user of `faer`.
+//! Sparse symmetric positive definite systems: Cholesky's factorisation with an ordering of little fill. The only user
+//! of `faer`.
 //!
-//! The order of elimination and the places of the fill depend on the pattern alone: they are found once, and factors of other
-//! values of the same pattern reuse them.
+//! The order of elimination and the places of the fill depend on the pattern alone: they are found once, and factors of
+//! other values of the same pattern reuse them.
 
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};

@@ -1,8 +1,8 @@
 //! A banded factor worked from both ends at once.
 //!
 //! Substitution in a narrow band waits for each unknown before it can begin the next. With the matrix cut in two by a
-//! separator as wide as the band, `A` from the top and `B` from the bottom (its rows taken backwards) do not wait for each
-//! other:
+//! separator as wide as the band, `A` from the top and `B` from the bottom (its rows taken backwards) do not wait for
+//! each other:
 //!
 //! ```text
 //! A = L_A D_A L_Aᵀ,   Y_A = L_A⁻¹ C_Aᵀ,   S = M - Y_Aᵀ D_A⁻¹ Y_A - Y_Bᵀ D_B⁻¹ Y_B

@@ -1,5 +1,5 @@
-//! Sleepers and the ballast below them in the passage over the grains: velocity and acceleration, shaded while the sleeper has
-//! no contact (paper, Figs. 17 and 18).
+//! Sleepers and the ballast below them in the passage over the grains: velocity and acceleration, shaded while the
+//! sleeper has no contact (paper, Figs. 17 and 18).
 
 use super::counts::{self, Count};
 use super::curves::{Axis, Chart, Mark, Series};

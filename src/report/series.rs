@@ -34,7 +34,8 @@ pub(super) fn has_dots(series: &Series) -> bool {
     series.mark == Mark::Dots && series.points.len() <= MOST_DOTS
 }
 
-/// The pieces of a curve in pixels, thinned by columns of `column` px and to what is farther than `off` px from a straight line.
+/// The pieces of a curve in pixels, thinned by columns of `column` px and to what is farther than `off` px from a
+/// straight line.
 pub(super) fn line_pixels(plane: &Plane, series: &Series, column: f64, off: f64) -> Vec<Vec<(f64, f64)>> {
     let pixels: Vec<(f64, f64)> = series.points.iter().map(|point| plane.point_at(*point)).collect();
     let pieces = pixels.split(|point| !finite(point)).filter(|piece| !piece.is_empty());

@@ -1,6 +1,7 @@
 //! Means with their confidence intervals.
 
-/// 97.5 % quantiles of Student's t for 1, 2, ... degrees of freedom; beyond them that of the normal distribution serves.
+/// 97.5 % quantiles of Student's t for 1, 2, ... degrees of freedom; beyond them that of the normal distribution
+/// serves.
 const STUDENT: [f64; 20] = [
     12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120,
     2.110, 2.101, 2.093, 2.086,
@@ -33,7 +34,8 @@ fn mean_and_variance(values: &[f64]) -> (f64, Option<f64>) {
     (mean, Some(squares / (count - 1.0)))
 }
 
-/// Half the width of the 95 % interval of a difference of two independent means, each of so many values with that deviation (Welch).
+/// Half the width of the 95 % interval of a difference of two independent means, each of so many values with that
+/// deviation (Welch).
 pub fn confidence_of_difference((one, ones): (f64, usize), (other, others): (f64, usize)) -> Option<f64> {
     if ones < 2 || others < 2 {
         return None;

@@ -1,14 +1,14 @@
 //! Beds of grains as VTK files of polygonal data (`.vtp`), which ParaView opens: pebbles as points, contacts as lines.
 //!
-//! XML with binary arrays in base64, uncompressed, after the "VTK XML file formats" page of the VTK manual. Places are in
-//! double precision, all else in single. In ParaView, show the points as `Point Gaussian` or as glyphs scaled by `radius`,
-//! the lines as tubes by `force`.
+//! XML with binary arrays in base64, uncompressed, after the "VTK XML file formats" page of the VTK manual. Places are
+//! in double precision, all else in single. In ParaView, show the points as `Point Gaussian` or as glyphs scaled by
+//! `radius`, the lines as tubes by `force`.
 
 use super::grains::{Grain, Link, norm};
 use std::io::{self, Write};
 
-/// Writes pebbles as points with `radius` (m), `body`, `velocity` (m/s), `speed`, `coordination`, `largest_force` (N) and,
-/// where every one has it, `displacement` (m).
+/// Writes pebbles as points with `radius` (m), `body`, `velocity` (m/s), `speed`, `coordination`, `largest_force` (N)
+/// and, where every one has it, `displacement` (m).
 pub fn bodies_vtk(grains: &[Grain], out: impl Write) -> io::Result<()> {
     let mut file = File { out };
     file.begin(grains.len(), 0)?;
@@ -28,8 +28,8 @@ pub fn bodies_vtk(grains: &[Grain], out: impl Write) -> io::Result<()> {
     file.end()
 }
 
-/// Writes contacts as lines with `force` (magnitude, N), `normal_force` (N), `force_on_first` (N), `overlap` (m) and `wall`,
-/// which is 1 where a wall takes part.
+/// Writes contacts as lines with `force` (magnitude, N), `normal_force` (N), `force_on_first` (N), `overlap` (m) and
+/// `wall`, which is 1 where a wall takes part.
 pub fn contacts_vtk(links: &[Link], out: impl Write) -> io::Result<()> {
     let mut file = File { out };
     file.begin(2 * links.len(), links.len())?;

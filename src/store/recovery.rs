@@ -2,9 +2,9 @@
 //!
 //! 1. Before `intent.json` exists, the old results are valid; staged files are deleted.
 //! 2. After that the new results are certain. The remaining steps can be read from the disk and may be repeated:
-//!    each staged file is renamed to its place; files that are only in the old manifest are removed; then the unfinished
-//!    work and the staging folder are removed. The old manifest stays until all of this is done, because it lists the
-//!    old files.
+//!    each staged file is renamed to its place; files that are only in the old manifest are removed; then the
+//!    unfinished work and the staging folder are removed. The old manifest stays until all of this is done, because it
+//!    lists the old files.
 //! 3. `intent.json` is renamed to `manifest.json`: there is no intent any more, and the new results are valid.
 //!
 //! A directory without an intent is complete; a directory with an intent is completed by [`finish`].

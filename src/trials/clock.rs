@@ -1,4 +1,5 @@
-//! Time that a passage takes of a core: other programs on the machine are not counted where the system tells them apart.
+//! Time that a passage takes of a core: other programs on the machine are not counted where the system tells them
+//! apart.
 
 use std::fs;
 use std::time::Instant;

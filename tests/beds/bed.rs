@@ -33,7 +33,8 @@ pub fn law() -> ContactLaw {
     })
 }
 
-/// About 200 grains of 16 to 30 mm radius that fall on a floor, five times as heavy as on earth, every third a clump of two or three pebbles.
+/// About 200 grains of 16 to 30 mm radius that fall on a floor, five times as heavy as on earth, every third a clump of
+/// two or three pebbles.
 pub fn bed<R: Real>(seed: u64) -> Bed<R> {
     let mut random = Random::new(seed);
     let mut bed = Bed::new(Domain::open().periodic(0, 0.4).periodic(1, 0.4), ContactLaws::single(law()));

@@ -32,7 +32,8 @@ impl Listener for Stopping {
     }
 }
 
-/// Runs a graph whole, and stopped after its first block, in its middle and before its last block; `what` names it where they part.
+/// Runs a graph whole, and stopped after its first block, in its middle and before its last block; `what` names it
+/// where they part.
 pub fn stops_and_goes_on(graph: &Graph, what: &str) {
     let run = |left: usize, from: Option<Checkpoint>| {
         let mut listener = Stopping { left, kept: None, blocks: Vec::new() };

@@ -1,5 +1,6 @@
-//! What goes wrong around the program and is no mistake of its scene: disks, clocks, signals, memory, damage. Each test would fail
-//! without the guard that it is about. `cargo run --release --example faults -- 1000` kills every coupled tier a thousand times.
+//! What goes wrong around the program and is no mistake of its scene: disks, clocks, signals, memory, damage. Each test
+//! would fail without the guard that it is about. `cargo run --release --example faults -- 1000` kills every coupled
+//! tier a thousand times.
 
 #[path = "../common/coarse_cells.rs"]
 mod coarse_cells;

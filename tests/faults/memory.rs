@@ -2,7 +2,8 @@
 
 use super::{Place, on_a_law, refused, same_results};
 
-/// What this run records takes more than its scene allows; the check warns of it (L1022), and the machine could hold it.
+/// What this run records takes more than its scene allows; the check warns of it (L1022), and the machine could hold
+/// it.
 #[test]
 fn a_run_that_outgrows_its_memory_stops_and_goes_on() {
     let scene = on_a_law(4000).replace("time_step = 2e-4 s }", "time_step = 2e-4 s, memory = 0.01 GiB }").replace(

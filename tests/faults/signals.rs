@@ -13,7 +13,8 @@ fn on_grains(solve: &str, axles: u32) -> String {
     coarse_cells::SCENE.replace(SOLVE, solve).replace("total = 40 axles", &format!("total = {axles} axles"))
 }
 
-/// Stops a run as soon as it has kept a state, by Ctrl-C, stops it by SIGTERM as soon as it goes on, kills it, and lets it come to its end.
+/// Stops a run as soon as it has kept a state, by Ctrl-C, stops it by SIGTERM as soon as it goes on, kills it, and lets
+/// it come to its end.
 fn stops_is_killed_and_goes_on(scene: &str) {
     let place = Place::new(scene);
     let checkpoint = place.path("cut/.trackbed/checkpoint");

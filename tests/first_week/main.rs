@@ -1,5 +1,6 @@
-//! What a railway engineer types in a first week, kind by kind, over scenes of every sort: each slip gives one diagnostic at its own
-//! line, with the way out; and where the way out offers a text, that text passes the checker when it is typed as offered.
+//! What a railway engineer types in a first week, kind by kind, over scenes of every sort: each slip gives one
+//! diagnostic at its own line, with the way out; and where the way out offers a text, that text passes the checker when
+//! it is typed as offered.
 
 use trackbed::check::Folder;
 use trackbed::diag::Code;
@@ -16,9 +17,9 @@ mod quotes;
 mod units;
 mod words;
 
-/// A scene, what stands in it, what is typed in its place, the code, what the way out says, and the part of what is typed that the
-/// first text in backticks of the way out takes the place of (none where it offers no text). The mistake stands in the first line of
-/// what is typed, or behind `▸`.
+/// A scene, what stands in it, what is typed in its place, the code, what the way out says, and the part of what is
+/// typed that the first text in backticks of the way out takes the place of (none where it offers no text). The mistake
+/// stands in the first line of what is typed, or behind `▸`.
 type Slip = (&'static str, &'static str, &'static str, Code, &'static str, &'static str);
 
 /// An embankment meets a slab: law, study, tamping, stretches, profiles.

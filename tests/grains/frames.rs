@@ -1,4 +1,5 @@
-//! What must not depend on the frame or on the order: contacts that turn as one, twist, rolling, mirrored and swapped pairs.
+//! What must not depend on the frame or on the order: contacts that turn as one, twist, rolling, mirrored and swapped
+//! pairs.
 
 use crate::scenes::{
     RADIUS, Vec3, add, alone, close, cross, dot, norm, open, random, scaled, shown, sphere, springs, sub,
@@ -93,8 +94,8 @@ fn a_pair_that_turns_as_one_keeps_its_shear_force() {
     });
 }
 
-/// A pair that turns about its line of centres and across it at once slips a little, because velocities stand half a step
-/// before the normal: by `d w_n w_t dt / 2` a second, which goes away with the step.
+/// A pair that turns about its line of centres and across it at once slips a little, because velocities stand half a
+/// step before the normal: by `d w_n w_t dt / 2` a second, which goes away with the step.
 #[test]
 fn turning_about_any_axis_slips_by_half_a_step() {
     alone(|| {
@@ -219,7 +220,8 @@ fn swapping_the_order_of_making_changes_no_bit() {
     assert_eq!(turned, pairs.len());
 }
 
-/// In a mirror, velocities change their sign across it and spins along it: bit by bit where the mirror is a plane of axes.
+/// In a mirror, velocities change their sign across it and spins along it: bit by bit where the mirror is a plane of
+/// axes.
 #[test]
 fn a_mirrored_collision_is_the_mirror_of_the_collision() {
     fn check<R: Real>() {

@@ -1,4 +1,5 @@
-//! Impacts against the closed forms of the linear law: spring and dashpot, Cundall's damping, friction in an oblique impact.
+//! Impacts against the closed forms of the linear law: spring and dashpot, Cundall's damping, friction in an oblique
+//! impact.
 
 use crate::scenes::{DENSITY, RADIUS, alone, close, extrapolated, mass, open, shown, speed, sphere, springs};
 use std::f64::consts::PI;

@@ -1,8 +1,8 @@
 //! A plain solver of the same equations, to compare with: every pair in turn, a struct a sphere, double precision.
 //!
 //! PFC's linear model as its manual states it: springs by overlap and by increments of shear, dashpots by the share of
-//! critical damping, properties of pairs from two surfaces, Cundall's damping, leapfrog. It knows the kernel only by the
-//! numbers that describe a scene.
+//! critical damping, properties of pairs from two surfaces, Cundall's damping, leapfrog. It knows the kernel only by
+//! the numbers that describe a scene.
 
 use crate::scenes::{Vec3, add, cross, dot, norm, scaled, sub};
 use std::collections::BTreeMap;

@@ -114,8 +114,8 @@ fn bays_repeat_bit_by_bit() {
     check::<f32>();
 }
 
-/// A sphere that slides and rolls through several bays, and hits one at rest, goes as it goes where nothing is cut: until it
-/// bounces, each time lower, which no rounding survives.
+/// A sphere that slides and rolls through several bays, and hits one at rest, goes as it goes where nothing is cut:
+/// until it bounces, each time lower, which no rounding survives.
 #[test]
 fn a_sphere_crosses_bays() {
     let run = |domain: Domain| {

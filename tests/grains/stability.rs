@@ -28,7 +28,8 @@ struct Trial {
 }
 
 impl Trial {
-    /// Largest change of velocity in a step, as a way; none where it leaves the linear range. Slow drifts do not show in it.
+    /// Largest change of velocity in a step, as a way; none where it leaves the linear range. Slow drifts do not show
+    /// in it.
     fn jolt(&self, bed: &mut Bed<f64>, steps: u64) -> Option<f64> {
         let mut most: f64 = 0.0;
         for _ in 0..steps {

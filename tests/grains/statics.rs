@@ -128,8 +128,8 @@ fn a_floor_carries_the_weight_of_a_bed() {
     println!("floor {:.3} Pa, weight over area {:.3} Pa", pressure(&bed), weight / (side * side));
     close(pressure(&bed), weight / (side * side), 1e-6, "floor pressure");
 
-    // half as heavy again, so that it moves: the impulse of the floor is that of the weight and of the motion. Local damping
-    // is a force from nowhere and stays out.
+    // half as heavy again, so that it moves: the impulse of the floor is that of the weight and of the motion. Local
+    // damping is a force from nowhere and stays out.
     bed.set_damping(0.0);
     bed.set_gravity(Gravity::Constant([0.0, 0.0, -1.5 * GRAVITY]));
     let rise = |bed: &Bed<f32>| bed.states().map(|s| s.mass * s.velocity[2]).sum::<f64>();

@@ -1,4 +1,5 @@
-//! A ground of another program under the track: what it is asked, what it is told, and what becomes of a run in which it fails or changes.
+//! A ground of another program under the track: what it is asked, what it is told, and what becomes of a run in which
+//! it fails or changes.
 
 use super::scene::{Told, ToldBlock, planned};
 use super::sinking::{EACH, KIND, Witness, executor, plan};

@@ -1,5 +1,6 @@
-//! The plan as data and the machine that runs it, as another program uses them: what stands against a plan, nodes, schedules, tiers and
-//! passes that this crate does not know, and a plan and its checkpoints on their way through a file.
+//! The plan as data and the machine that runs it, as another program uses them: what stands against a plan, nodes,
+//! schedules, tiers and passes that this crate does not know, and a plan and its checkpoints on their way through a
+//! file.
 
 mod faults;
 mod ground;

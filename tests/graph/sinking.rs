@@ -1,5 +1,5 @@
-//! A ground of another program: it settles by the same amount under every train, takes the whole history of every sleeper's force, may
-//! soften from block to block, and may fail once.
+//! A ground of another program: it settles by the same amount under every train, takes the whole history of every
+//! sleeper's force, may soften from block to block, and may fail once.
 
 use super::scene::planned;
 use serde::{Deserialize, Serialize};

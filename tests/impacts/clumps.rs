@@ -223,7 +223,8 @@ fn a_falling_dumbbell_is_a_rigid_body() {
     assert!(errors[3] < 2e-3 && errors[3] < 0.5 * errors[0], "{errors:?}");
 }
 
-/// Angular momentum and kinetic energy of a free clump, from what one can read: the spin is that of the middle of the step.
+/// Angular momentum and kinetic energy of a free clump, from what one can read: the spin is that of the middle of the
+/// step.
 fn turning(state: &BodyState, inertia: V, dt: f64) -> (V, f64) {
     let [w, x, y, z] = state.attitude;
     let attitude = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, x, y, z));

@@ -9,7 +9,8 @@ const STIFFNESS: f64 = 50e6;
 const GRAVITY: f64 = 9.81;
 const HEIGHT: f64 = 1e-3;
 
-/// A sleeper under a thread of a rail, held `HEIGHT` above its support; the force of the thread is a millionth of its weight.
+/// A sleeper under a thread of a rail, held `HEIGHT` above its support; the force of the thread is a millionth of its
+/// weight.
 fn sleeper(damping: f64) -> TrackModel {
     let foot = Foot::Sleeper { mass: MASS, support_stiffness: STIFFNESS, support_damping: damping, seating: None };
     let mut model = beam([-1.0, 1.0], 0.1, 1e-12, RailEnds::Pinned, 1);
@@ -62,8 +63,9 @@ fn growth(energy: &[f64]) -> f64 {
     growth
 }
 
-/// Over 230 bounces without a damper the energy does not drift, and it rises by no more than the scheme resolves of a contact,
-/// which lasts 5.4 ms; with a damper it falls. No method stands out: this contact gives way, and it is solved within the step.
+/// Over 230 bounces without a damper the energy does not drift, and it rises by no more than the scheme resolves of a
+/// contact, which lasts 5.4 ms; with a damper it falls. No method stands out: this contact gives way, and it is solved
+/// within the step.
 #[test]
 fn energy_over_hundreds_of_bounces() {
     for (name, make) in METHODS {
@@ -84,8 +86,8 @@ fn energy_over_hundreds_of_bounces() {
     }
 }
 
-/// A step of 2 ms makes less than three steps of a contact: then energy jumps at every bounce. It comes back to where it was
-/// with Newmark, HHT loses it, and generalised-alpha may end with twice of it: smaller steps are the remedy.
+/// A step of 2 ms makes less than three steps of a contact: then energy jumps at every bounce. It comes back to where
+/// it was with Newmark, HHT loses it, and generalised-alpha may end with twice of it: smaller steps are the remedy.
 #[test]
 fn too_few_steps_in_a_contact() {
     for (name, make) in METHODS {

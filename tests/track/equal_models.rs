@@ -1,4 +1,5 @@
-//! Descriptions of one track that give one result: sections of equal form, places shifted along the line, longer models.
+//! Descriptions of one track that give one result: sections of equal form, places shifted along the line, longer
+//! models.
 
 use crate::scenes::*;
 use trackbed::solvers::track::*;

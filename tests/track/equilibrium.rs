@@ -1,5 +1,5 @@
-//! Whatever the supports have settled, the track at rest finds its equilibrium: supports push, none pulls, and together they
-//! carry the weight.
+//! Whatever the supports have settled, the track at rest finds its equilibrium: supports push, none pulls, and together
+//! they carry the weight.
 
 use crate::scenes::*;
 use proptest::prelude::*;

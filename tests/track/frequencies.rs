@@ -52,8 +52,8 @@ fn beam_under_a_step_load() {
     assert!((peak - series_peak).abs() < 5e-4 && peak < 2.0, "found 1.9999 of 2");
 }
 
-/// Frequency of mode n of a simply supported beam of length l, Hz: the lower root of the two unknowns w and θ of its shape,
-/// `ρA ρI ω⁴ - (κGA ρA + (κGA ρI + EI ρA) q²) ω² + EI κGA q⁴ = 0`, q = nπ/l.
+/// Frequency of mode n of a simply supported beam of length l, Hz: the lower root of the two unknowns w and θ of its
+/// shape, `ρA ρI ω⁴ - (κGA ρA + (κGA ρI + EI ρA) q²) ω² + EI κGA q⁴ = 0`, q = nπ/l.
 fn timoshenko(section: &RailSection, shear: Shear, l: f64, n: f64) -> f64 {
     let (q2, ei, ga) = ((n * PI / l).powi(2), section.bending_stiffness, shear.stiffness);
     let (m, rotary) = (section.mass, shear.rotary_inertia);
@@ -78,7 +78,8 @@ fn pinned_pinned() {
     }
 }
 
-/// The error of a frequency falls with the fourth power of the element's length, as `(k h)^4/1440` of the cubic element.
+/// The error of a frequency falls with the fourth power of the element's length, as `(k h)^4/1440` of the cubic
+/// element.
 #[test]
 fn order_in_element_length() {
     let expected = PI / (2.0 * 100.0) * 1e5f64.sqrt();
@@ -101,8 +102,8 @@ fn order_in_element_length() {
     assert!((found - 4.0).abs() < 0.15, "observed order {found}, found 3.95");
 }
 
-/// Shear strain is constant in an element, so frequencies of a Timoshenko beam converge with the square of its length; the
-/// error is the share of shear in the flexibility, small in a rail.
+/// Shear strain is constant in an element, so frequencies of a Timoshenko beam converge with the square of its length;
+/// the error is the share of shear in the flexibility, small in a rail.
 #[test]
 fn order_in_element_length_with_shear() {
     let shape = |x: f64| 1e3 * (PI * x / 0.6).sin();

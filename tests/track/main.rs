@@ -1,5 +1,5 @@
-//! The track solver against solutions that share none of its code: closed forms, modal sums of matrices assembled here, and
-//! what must hold of every run.
+//! The track solver against solutions that share none of its code: closed forms, modal sums of matrices assembled here,
+//! and what must hold of every run.
 
 mod modal;
 mod scenes;

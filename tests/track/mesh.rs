@@ -4,8 +4,8 @@ use crate::frequencies::amplitude;
 use crate::scenes::*;
 use trackbed::solvers::track::*;
 
-/// Two stretches of sleepers on supports of 132 and 1320 MN/m under the wagon, 1, 2, 4 and 8 elements a bay: the rail over the
-/// first stiff sleeper, against the finest mesh and, as is usual, against the coarsest.
+/// Two stretches of sleepers on supports of 132 and 1320 MN/m under the wagon, 1, 2, 4 and 8 elements a bay: the rail
+/// over the first stiff sleeper, against the finest mesh and, as is usual, against the coarsest.
 #[test]
 fn elements_between_seats() {
     let run = |elements: usize| {
@@ -32,11 +32,11 @@ fn elements_between_seats() {
     assert!(fine[0] < 1e-3 && fine[1] < 1e-4 && fine[2] < 2e-5, "found 3.7e-4, 3.2e-5, 7.8e-6");
 }
 
-/// A wheel that crosses the nodes of its mesh hardly feels them: at the multiples of the passing of sleepers, where the nodes
-/// of 1 to 8 elements a bay are heard, the wheel force is that of a mesh of 12.
+/// A wheel that crosses the nodes of its mesh hardly feels them: at the multiples of the passing of sleepers, where the
+/// nodes of 1 to 8 elements a bay are heard, the wheel force is that of a mesh of 12.
 ///
-/// A rail that shears has a kink under the wheel. Between two nodes it stands in the contact, without mass, and at a node in
-/// the rail, with it: the nodes are felt at any length of the elements.
+/// A rail that shears has a kink under the wheel. Between two nodes it stands in the contact, without mass, and at a
+/// node in the rail, with it: the nodes are felt at any length of the elements.
 #[test]
 fn nodes_are_hardly_felt() {
     let passing = SPEED / 0.6;

@@ -1,7 +1,8 @@
-//! Linear tracks by their modes: matrices assembled here from the model, a dense generalised eigenproblem, and solutions that
-//! are exact in time.
+//! Linear tracks by their modes: matrices assembled here from the model, a dense generalised eigenproblem, and
+//! solutions that are exact in time.
 //!
-//! Unknowns are deflection and slope of every rail node and then the sleepers, all supports closed, held unknowns taken out.
+//! Unknowns are deflection and slope of every rail node and then the sleepers, all supports closed, held unknowns taken
+//! out.
 
 use nalgebra::{DMatrix, DVector, Matrix4, RowVector4, SymmetricEigen};
 use trackbed::solvers::track::*;
@@ -180,8 +181,8 @@ impl Modes {
         &self.shapes * q
     }
 
-    /// Displacements of the undamped track, at rest at first, once a force has gone from `from` to `to` at `speed`. Within an
-    /// element the force on a mode is a cubic in time, and the motion under a cubic is known.
+    /// Displacements of the undamped track, at rest at first, once a force has gone from `from` to `to` at `speed`.
+    /// Within an element the force on a mode is a cubic in time, and the motion under a cubic is known.
     pub fn under_moving_force(&self, force: f64, from: f64, to: f64, speed: f64) -> DVector<f64> {
         let count = self.free.len();
         let start = self.at_rest(&self.force(from, force));

@@ -7,7 +7,8 @@ use nalgebra::Complex;
 use std::f64::consts::PI;
 use trackbed::solvers::track::*;
 
-/// Rail deflections at every node for each of the steps that `at` asks for, with the force starting at rest on the left end.
+/// Rail deflections at every node for each of the steps that `at` asks for, with the force starting at rest on the left
+/// end.
 fn roll(
     model: &TrackModel,
     scheme: Scheme,
@@ -27,8 +28,8 @@ fn roll(
     (0..stepper.track().nodes().len()).map(|node| view.rail_deflection(node)).collect()
 }
 
-/// Mid-span of a simply supported beam (25 m, EI = 8.323 GN m², 2303 kg/m) under 56.4 kN at 100 km/h, the force of the sprung
-/// mass of Yang and Yau: Fryba's series.
+/// Mid-span of a simply supported beam (25 m, EI = 8.323 GN m², 2303 kg/m) under 56.4 kN at 100 km/h, the force of the
+/// sprung mass of Yang and Yau: Fryba's series.
 #[test]
 fn simply_supported_beam() {
     let (l, ei, m, speed): (f64, f64, f64, f64) = (25.0, 8.323e9, 2303.0, 100.0 / 3.6);

@@ -87,8 +87,8 @@ fn tracks_follow_their_modes() {
     }
 }
 
-/// Halving the step quarters the error against the exact motion of the same mesh, for every method and both beam theories.
-/// Waves of shear and rotation, at 5 kHz, ask for smaller steps before they follow.
+/// Halving the step quarters the error against the exact motion of the same mesh, for every method and both beam
+/// theories. Waves of shear and rotation, at 5 kHz, ask for smaller steps before they follow.
 #[test]
 fn order_in_time() {
     for (theory, shear, steps) in [
@@ -107,8 +107,8 @@ fn order_in_time() {
     }
 }
 
-/// A damped beam under a step load (L = 10 m, EI = 2 MN m², 2 t/m, damping as its mass of 2 % at 2 rad/s) against its modal
-/// series. What is let go after a load is what has not yet come under a step.
+/// A damped beam under a step load (L = 10 m, EI = 2 MN m², 2 t/m, damping as its mass of 2 % at 2 rad/s) against its
+/// modal series. What is let go after a load is what has not yet come under a step.
 #[test]
 fn damped_beam_under_a_step_load() {
     use std::f64::consts::PI;

@@ -39,7 +39,8 @@ fn thick_beam_under_a_step_load() {
         worst = worst.max((still - value - series(step as f64 * time_step)).abs() / still);
     }
     println!("largest difference {worst:.1e} of the static deflection");
-    // A point load sends waves of shear with fronts that no mesh resolves: 1.0e-2 with half the elements and twice the step.
+    // A point load sends waves of shear with fronts that no mesh resolves: 1.0e-2 with half the elements and twice the
+    // step.
     assert!(worst < 8e-3, "found 6.0e-3");
 }
 

@@ -52,8 +52,8 @@ fn standing_load() {
     assert!((stiff / 0.70731e-3 - 1.0).abs() < 5e-4, "found {stiff}");
 }
 
-/// On the jump two half beams share deflection, slope and moment: force and moment on the end of one are `4EIλ³ w + 2EIλ² w'`
-/// and `2EIλ² w + 2EIλ w'`. The springs come closer to it with the square of their spacing.
+/// On the jump two half beams share deflection, slope and moment: force and moment on the end of one are `4EIλ³ w +
+/// 2EIλ² w'` and `2EIλ² w + 2EIλ w'`. The springs come closer to it with the square of their spacing.
 #[test]
 fn load_on_the_jump() {
     let [a, b] = [SOFT, STIFF].map(|k| (k / (4.0 * EI)).powf(0.25));

@@ -4,8 +4,8 @@ use crate::modal::Modes;
 use crate::scenes::*;
 use trackbed::solvers::track::*;
 
-/// Pad 40 MN/m on supports of 20 to 60 MN/m and on rock, against the beam on a foundation smeared over 0.6 m and against the
-/// same springs in dense matrices.
+/// Pad 40 MN/m on supports of 20 to 60 MN/m and on rock, against the beam on a foundation smeared over 0.6 m and
+/// against the same springs in dense matrices.
 #[test]
 fn stiffness_at_the_rail() {
     for (support, stiffness, share) in [

@@ -1,4 +1,5 @@
-//! What a drawn scene is for, and what that asks of its fields beyond the schema: that a scene has trains or a load, and is small.
+//! What a drawn scene is for, and what that asks of its fields beyond the schema: that a scene has trains or a load,
+//! and is small.
 //!
 //! A field that has no line here is drawn by its form, its range and its need alone, so that a new one joins by itself.
 

@@ -1,5 +1,5 @@
-//! Scenes drawn at random from the schema: declarations of its kinds, each with the fields that it needs and some of the others, and
-//! values of their forms. Scene `k` of an aim always has the same text.
+//! Scenes drawn at random from the schema: declarations of its kinds, each with the fields that it needs and some of
+//! the others, and values of their forms. Scene `k` of an aim always has the same text.
 
 mod aim;
 mod asked;
@@ -123,7 +123,8 @@ impl Drawing<'_> {
         Some(name)
     }
 
-    /// Fields of a new object; `None` where one that it needs cannot be drawn. `owner` is the declaration to which they belong.
+    /// Fields of a new object; `None` where one that it needs cannot be drawn. `owner` is the declaration to which they
+    /// belong.
     fn fields(&mut self, kind: &'static Kind, owner: &str) -> Option<Vec<(String, String)>> {
         let ways = self.ways(kind);
         let mut fields: Vec<(String, String)> = Vec::new();

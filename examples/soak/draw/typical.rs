@@ -7,7 +7,8 @@ use trackbed::syntax::parse;
 use trackbed::syntax::tree::{self, Item, Value, ValueKind};
 use trackbed::units::{Dimension, parse_unit};
 
-/// Smallest and largest number of each field, in the unit of its range, by its path: `pad.stiffness`, `law.form.varandas.alpha`.
+/// Smallest and largest number of each field, in the unit of its range, by its path: `pad.stiffness`,
+/// `law.form.varandas.alpha`.
 #[derive(Default)]
 pub struct Typical(HashMap<String, [f64; 2]>);
 

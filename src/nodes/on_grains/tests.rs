@@ -1,4 +1,5 @@
-//! The coupled step against closed forms: columns of spheres as springs, a ball on an elastic block, energy under a moving force.
+//! The coupled step against closed forms: columns of spheres as springs, a ball on an elastic block, energy under a
+//! moving force.
 
 use super::soil::{Plan, SoilBelow};
 use super::step::{Coupled, Spent, StandingBed};
@@ -63,7 +64,8 @@ fn rail(foot: impl Fn(usize) -> Foot) -> TrackModel {
     }
 }
 
-/// Each sleeper on a column of spheres, `lowered` so far below the level of the others (m), on a rigid floor or on soil.
+/// Each sleeper on a column of spheres, `lowered` so far below the level of the others (m), on a rigid floor or on
+/// soil.
 struct Columns {
     spheres: usize,
     stiffness: f64,
@@ -128,8 +130,8 @@ fn middle() -> f64 {
     SPACING * (0.5 * SLEEPERS as f64)
 }
 
-/// A column of n equal contacts has the stiffness of one contact over n. A wheel stands on the rail: seat loads and levels are those of the
-/// track on such springs.
+/// A column of n equal contacts has the stiffness of one contact over n. A wheel stands on the rail: seat loads and
+/// levels are those of the track on such springs.
 #[test]
 fn columns_of_spheres_are_springs() {
     for spheres in [1, 3] {
@@ -224,8 +226,8 @@ fn stand_under(coupled: &mut Coupled, (x, force): (f64, f64)) {
     }
 }
 
-/// Rail, spheres and soil keep the work of a wheel that passes. Nothing is lost between them, and the unexplained part falls with the square
-/// of the step.
+/// Rail, spheres and soil keep the work of a wheel that passes. Nothing is lost between them, and the unexplained part
+/// falls with the square of the step.
 #[test]
 fn energy_is_kept_from_the_wheel_to_the_soil() {
     let run = |time_step: f64, youngs_modulus: f64, (shift, pitch): (f64, Option<Pitch>)| {
@@ -301,8 +303,8 @@ fn a_sleeper_over_a_void_of_20_mm_hangs() {
     assert!(most[SLEEPERS / 2 - 1] > 40e3 && most[SLEEPERS / 2 - 1] < 80e3, "{most:?}");
 }
 
-/// Soil from very soft to almost rigid. The time step adapts, the sleeper sinks less on stiffer soil, and the stiffest soil gives the answer
-/// of a rigid floor.
+/// Soil from very soft to almost rigid. The time step adapts, the sleeper sinks less on stiffer soil, and the stiffest
+/// soil gives the answer of a rigid floor.
 #[test]
 fn soft_and_stiff_soil_run() {
     let sink = |youngs_modulus: f64| {

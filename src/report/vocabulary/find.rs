@@ -33,13 +33,20 @@ fn plain(text: &str) -> String {
 /// Everything that can be found.
 fn all() -> Vec<Topic> {
     let kinds = KINDS.iter().map(Topic::Kind);
-    let fields = KINDS.iter().flat_map(|kind: &'static Kind| kind.fields.iter().map(move |field| Topic::Field(kind, field)));
+    let fields =
+        KINDS.iter().flat_map(|kind: &'static Kind| kind.fields.iter().map(move |field| Topic::Field(kind, field)));
     let entries = library();
     let of_module = |module: &str| entries.iter().filter(|entry| entry.module == module).cloned().collect();
     let modules = LIBRARY.iter().map(|(module, _)| Topic::Module(module, of_module(module)));
     let responses = Response::ALL.iter().copied().map(Topic::Response);
     let codes = Code::ALL.iter().copied().map(Topic::Code);
-    kinds.chain(fields).chain(modules).chain(entries.iter().cloned().map(Topic::Entry)).chain(responses).chain(codes).collect()
+    kinds
+        .chain(fields)
+        .chain(modules)
+        .chain(entries.iter().cloned().map(Topic::Entry))
+        .chain(responses)
+        .chain(codes)
+        .collect()
 }
 
 /// The text in which a word is looked for, beside the name.

@@ -1,4 +1,5 @@
-//! The vocabulary as a person asks for it: everything, one thing by its name, or all that a word finds; as text and as data.
+//! The vocabulary as a person asks for it: everything, one thing by its name, or all that a word finds; as text and as
+//! data.
 
 mod data;
 mod find;
@@ -25,7 +26,8 @@ pub enum Topic {
 }
 
 impl Topic {
-    /// The thing of that name: `usp`, `usp.bedding_modulus`, `usps`, `usps.medium`, `settlement`, `E0302`, `stiffness_jump`.
+    /// The thing of that name: `usp`, `usp.bedding_modulus`, `usps`, `usps.medium`, `settlement`, `E0302`,
+    /// `stiffness_jump`.
     pub fn named(name: &str) -> Option<Topic> {
         let kind = || schema::kind(name).map(Topic::Kind);
         let module = || {
@@ -65,7 +67,9 @@ impl Topic {
         match self {
             Topic::Kind(kind) => kind.doc.into(),
             Topic::Field(_, field) => field.doc.into(),
-            Topic::Module(module, entries) => format!("{} entries of the standard library: `use std.{module}`", entries.len()),
+            Topic::Module(module, entries) => {
+                format!("{} entries of the standard library: `use std.{module}`", entries.len())
+            }
             Topic::Entry(entry) => entry.doc.clone(),
             Topic::Response(response) => format!("a response, in {} in tables", response.unit()),
             Topic::Code(code) => match code.rule() {

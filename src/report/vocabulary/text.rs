@@ -56,7 +56,8 @@ fn line(entry: &Entry) -> (String, String) {
 
 /// Topics in a line each, under a heading for each sort.
 pub(super) fn listing(topics: &[Topic]) -> String {
-    let headings = ["Kinds", "Fields", "Modules of the standard library", "Entries of the standard library", "Responses", "Codes"];
+    let headings =
+        ["Kinds", "Fields", "Modules of the standard library", "Entries of the standard library", "Responses", "Codes"];
     let sections = headings.iter().enumerate().filter_map(|(sort, heading)| {
         let mut rows = topics.iter().filter(|topic| sort_of(topic) == sort).peekable();
         rows.peek()?;

@@ -2,8 +2,8 @@
 
 use super::random::SplitMix;
 
-/// `n` points in `d` directions: each direction is cut into `n` strata, and each stratum holds one point. McKay, Beckman
-/// and Conover (1979), Technometrics 21, 239-245.
+/// `n` points in `d` directions: each direction is cut into `n` strata, and each stratum holds one point. McKay,
+/// Beckman and Conover (1979), Technometrics 21, 239-245.
 pub fn latin_hypercube(n: usize, d: usize, seed: u64) -> Vec<Vec<f64>> {
     let mut random = SplitMix::new(seed);
     let mut points = vec![vec![0.0; d]; n];
