@@ -179,7 +179,7 @@ fn a_bed_is_drawn_and_written_for_others() {
     let (picture, folder) = (dir.path().join("bed.svg"), dir.path().join("vtk"));
     let (drawn, written) = (picture.to_str().unwrap(), folder.to_str().unwrap());
     for color in ["displacement", "speed", "force"] {
-        measured(&bed, &["--steps", "20", "--picture", drawn, "--color", color, "--chains", "--vtk", written]);
+        measured(&bed, &["--steps", "20", "--picture", drawn, "--color-by", color, "--chains", "--vtk", written]);
         let text = fs::read_to_string(&picture).unwrap();
         let document = roxmltree::Document::parse(&text).unwrap();
         let circles = document.descendants().filter(|n| n.has_tag_name("circle")).count();

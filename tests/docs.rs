@@ -7,9 +7,10 @@ use std::process::{Command, Output};
 use trackbed::check::{Folder, library};
 use trackbed::{cli, compile, report};
 
-/// `README.md` and every page of `docs/`.
+/// `README.md` and every page of `docs/` and `docs/cookbook/`.
 fn pages() -> Vec<(String, String)> {
-    let docs = fs::read_dir("docs").unwrap().map(|entry| entry.unwrap().path());
+    let folders = ["docs", "docs/cookbook"].map(|folder| fs::read_dir(folder).unwrap());
+    let docs = folders.into_iter().flatten().map(|entry| entry.unwrap().path());
     let pages = docs.filter(|path| path.extension().is_some_and(|e| e == "md")).chain([PathBuf::from("README.md")]);
     let mut pages: Vec<_> =
         pages.map(|path| (path.display().to_string(), fs::read_to_string(&path).unwrap())).collect();
@@ -122,6 +123,9 @@ fn the_tutorial_can_be_followed() {
     fs::create_dir(folder.path().join("scenarios")).unwrap();
     for entry in fs::read_dir("scenarios").unwrap() {
         let path = entry.unwrap().path();
+        if path.is_dir() {
+            continue;
+        }
         fs::copy(&path, folder.path().join("scenarios").join(path.file_name().unwrap())).unwrap();
     }
     let page = fs::read_to_string("docs/tutorial.md").unwrap();

@@ -56,7 +56,7 @@ fn a_file_of_forces_is_read_and_waits_for_grains() {
 fn a_file_of_something_else_is_told_at_its_row() {
     let whole = "file(\"force.csv\") per rail";
     for (force, file, code, message) in [
-        ("file(\"force.csv\")", RISE, Code::E0304, "per"),
+        ("file(\"force.csv\")", RISE, Code::E0304, "a basis"),
         ("file(\"force.csv\") per seat", RISE, Code::E0304, "a load on the rail is `per rail`"),
         ("file(\"other.csv\") per rail", RISE, Code::E0508, "no file `other.csv`"),
         (whole, "time_s,level_mm\n0,5\n1,6\n", Code::E0509, "no column of forces"),

@@ -200,7 +200,11 @@ fn comments_are_not_wider_than_code() {
         let comments = text.lines().enumerate().filter(|(_, line)| line.trim_start().starts_with("//"));
         // tables and addresses cannot be broken
         let breakable = comments.filter(|(_, line)| !line.contains("| ") && !line.contains("://"));
-        wide.extend(breakable.filter(|(_, line)| line.chars().count() > 120).map(|(row, _)| format!("{}:{}", path.display(), row + 1)));
+        wide.extend(
+            breakable
+                .filter(|(_, line)| line.chars().count() > 120)
+                .map(|(row, _)| format!("{}:{}", path.display(), row + 1)),
+        );
     }
     assert!(wide.is_empty(), "comments of more than 120 columns:\n{}", wide.join("\n"));
 }

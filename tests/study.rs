@@ -71,7 +71,7 @@ fn a_chart_sets_error_against_time() {
         assert!((1.7..2.3).contains(&smooth), "{order}");
     }
     let picture = check_picture(&out.join("chart.svg"));
-    assert!(picture.contains("the scene&#39;s own numerics") && picture.contains("newmark"));
+    assert!(picture.contains("numerics of the scene") && picture.contains("newmark"));
 }
 
 /// Steps that vary are set against even ones, whichever the scene has.

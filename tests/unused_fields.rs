@@ -178,10 +178,12 @@ fn a_study_over_a_field_that_does_nothing_is_told_once() {
 
 #[test]
 fn shipped_scenes_state_nothing_to_no_purpose() {
-    for entry in std::fs::read_dir("scenarios").unwrap() {
-        let path = entry.unwrap().path();
+    let folders = ["scenarios", "scenarios/cookbook"].map(|folder| std::fs::read_dir(folder).unwrap());
+    let paths = folders.into_iter().flatten().map(|entry| entry.unwrap().path());
+    for path in paths.filter(|path| path.extension().is_some_and(|e| e == "track")) {
         let text = std::fs::read_to_string(&path).unwrap();
-        let compiled = compile(&path.display().to_string(), &text, &Folder("scenarios".into()), &[]);
+        let folder = Folder(path.parent().unwrap().into());
+        let compiled = compile(&path.display().to_string(), &text, &folder, &[]);
         assert!(idle(&compiled).is_empty(), "{}:\n{}", path.display(), shown(&compiled));
     }
 }

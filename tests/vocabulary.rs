@@ -74,7 +74,7 @@ fn the_whole_vocabulary_is_data() {
     assert_eq!(modulus["unit"], "N/mm^3");
     assert!(modulus["range"][0].as_f64() < modulus["range"][1].as_f64());
     assert_eq!(named("library", "usps.medium")["fields"]["bedding_modulus"], "0.20 N/mm^3");
-    assert_eq!(named("responses", "settlement")["unit"], "mm");
+    assert_eq!(named("responses", "settlement")["unit"], "m");
     assert_eq!(named("codes", "L1001")["rule"], "stiffness_jump");
     assert_eq!(data(&["usps.medium"])["topic"], "entry");
     assert_eq!(data(&["usps"])["entries"].as_array().unwrap().len(), 5);

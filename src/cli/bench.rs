@@ -99,9 +99,9 @@ struct Grains {
     /// Draw the bed after the last step, from the side, as SVG.
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
-    /// What the colours of the picture say.
+    /// Quantity that the colours of the picture show.
     #[arg(long, value_enum, default_value = "displacement")]
-    color: Color,
+    color_by: Color,
     /// The edge of the bed along which the picture runs.
     #[arg(long, value_enum, default_value = "x")]
     side: SideName,
@@ -370,7 +370,7 @@ impl Grains {
                     SideName::X => Side::X,
                     SideName::Y => Side::Y,
                 },
-                colour: match self.color {
+                colour: match self.color_by {
                     Color::Displacement => Colour::Displacement,
                     Color::Speed => Colour::Speed,
                     Color::Force => Colour::Force,

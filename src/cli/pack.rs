@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   trackbed pack scenarios/box_test.track --out bed
-  trackbed pack scenarios/box_test.track --seed 2 --out bed_2")]
+  trackbed pack scenarios/box_test.track --set solve.seed=2 --out bed_2")]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,

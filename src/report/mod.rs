@@ -258,7 +258,7 @@ mod tests {
             "Stiffness at rail level",
             "alert from 7 mm (EN 13848-5)",
             "500 kPa (UIC, concrete)",
-            "unchecked",
+            "were not checked against the standards",
         ] {
             assert!(head.contains(text), "{text}: {head}");
         }
