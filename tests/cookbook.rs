@@ -1,5 +1,5 @@
-//! The cookbook: each question has a scene that checks without a warning and asks for a study, and a page whose excerpts
-//! are lines of that scene.
+//! The cookbook: each question has a scene that checks without a warning and asks for a study, and a page with excerpts
+//! of that scene.
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -188,7 +188,6 @@ fn files_hold_one_idea() {
     }
 }
 
-/// The name of a function alone does not say what `Length::of` or `profile.at` gives.
 /// Comments can be read beside a page of code: rustfmt leaves them as they are.
 #[test]
 fn comments_are_not_wider_than_code() {
@@ -209,6 +208,7 @@ fn comments_are_not_wider_than_code() {
     assert!(wide.is_empty(), "comments of more than 120 columns:\n{}", wide.join("\n"));
 }
 
+/// The name of a function alone does not say what `Length::of` or `profile.at` gives.
 #[test]
 fn names_say_what_they_are() {
     for path in sources(Path::new("src")) {

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   trackbed calibrate scenarios/transition.track --measured curve.csv
-  trackbed calibrate scenarios/transition.track --measured curve.csv --seat-load '40 kN' --fit gamma,beta")]
+  trackbed calibrate zone.track --measured curve.csv --seat-load '40 kN' --fit gamma,beta")]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,

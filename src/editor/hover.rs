@@ -38,7 +38,9 @@ fn meaning(view: &View, mark: &Mark) -> Option<String> {
             paragraphs([head, field_meaning(field), String::new()])
         }
         What::Word(word) => paragraphs([format!("**{}**", signature(word)), word_meaning(word), String::new()]),
-        What::Response(response) => format!("**{}** (response), in `{}`", response.name(), response.unit()),
+        What::Response(response) => {
+            format!("**{}** (response): {}, in `{}`", response.name(), response.doc(), response.unit())
+        }
         What::Rule(code) => format!("**{}** (physics rule {code})\n\n{}", text()?, code.title()),
         What::Transition(_) => format!("**{}** (transition)", text()?),
         What::Number(Some(field)) => format!("**{}**: {}\n\n{}", field.name, form_and_need(field), field.doc),

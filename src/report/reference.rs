@@ -45,8 +45,8 @@ fn profiles() -> String {
 }
 
 fn responses() -> String {
-    let rows = Response::ALL.iter().map(|r| format!("| `{}` | {} |\n", r.name(), r.unit()));
-    format!("## Responses\n\n| response | unit of its tables |\n|---|---|\n{}", rows.collect::<String>())
+    let rows = Response::ALL.iter().map(|r| format!("| `{}` | {} | {} |\n", r.name(), r.doc(), r.unit()));
+    format!("## Responses\n\n| response | meaning | unit of its tables |\n|---|---|---|\n{}", rows.collect::<String>())
 }
 
 fn standard_library() -> String {

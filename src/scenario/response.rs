@@ -256,6 +256,51 @@ impl Response {
         }
     }
 
+    /// Its meaning, in words that follow its name.
+    pub fn doc(self) -> &'static str {
+        match self {
+            Response::RailSeatLoad => "force of the rail on a rail seat",
+            Response::ContactForce => "force between a sleeper and its support during a passage, never negative",
+            Response::GravityContactForce => "force between a sleeper and its support without a vehicle",
+            Response::ContactPressure => "largest contact force divided by half the bearing area of the sleeper",
+            Response::SubgradePressure => "pressure on the lowest layer, if layers are known",
+            Response::WheelForce => "force between a wheel and the rail",
+            Response::RailDisplacement => {
+                "displacement of the rail from its unloaded state at that axle count, downward"
+            }
+            Response::RailLevel => "level of the unloaded rail, downward from the level as built",
+            Response::RailMoment => "bending moment of the rail",
+            Response::RailStiffness => "mean wheel load divided by the additional deflection under a standing wheel",
+            Response::Settlement => "permanent settlement of the ballast below a sleeper",
+            Response::Void => "gap between an unloaded sleeper and its support",
+            Response::SleeperDisplacement => "displacement of a sleeper during a passage, downward",
+            Response::SleeperVelocity => "velocity of a sleeper during a passage, downward",
+            Response::SleeperAcceleration => "acceleration of a sleeper during a passage, downward",
+            Response::SupportStiffness => "stiffness of the support and the under sleeper pad in series, of one seat",
+            Response::ContactLoss => "time without contact between a sleeper and its support during a passage",
+            Response::BallastVelocity => "mean velocity of the grains in a volume, downward",
+            Response::BallastAcceleration => "mean acceleration of the grains in a volume, downward",
+            Response::BallastStress => "vertical stress in a volume of grains",
+            Response::Porosity => "share of voids in a volume of grains",
+            Response::CoordinationNumber => "mean number of contacts of a grain in a volume",
+            Response::FarFieldSettlement => {
+                "median settlement of the sleepers on ballast more than 10 m away from every transition"
+            }
+            Response::DifferentialSettlement => {
+                "largest settlement of a sleeper on ballast minus the far-field settlement"
+            }
+            Response::VoidedSleepers => "number of sleepers with a void",
+            Response::BrokenBonds => "share of broken bonds between glued grains",
+            Response::SettlementStep => {
+                "mean settlement within 5 m on the softer side of a transition minus the mean on the stiffer side"
+            }
+            Response::LevelChangeWheelbase => {
+                "largest change of the unloaded rail level over the wheelset spacing of the leading vehicle"
+            }
+            Response::LevelChange3m => "largest change of the unloaded rail level over 3 m",
+        }
+    }
+
     /// The SI unit of its values.
     pub fn unit(self) -> &'static str {
         match self {

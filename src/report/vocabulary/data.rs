@@ -112,7 +112,7 @@ fn entry(entry: &Entry) -> Value {
 }
 
 fn response(response: &Response) -> Value {
-    json!({ "name": response.name(), "unit": response.unit() })
+    json!({ "name": response.name(), "unit": response.unit(), "meaning": response.doc() })
 }
 
 fn code(code: &Code) -> Value {

@@ -71,7 +71,7 @@ impl Topic {
                 format!("{} entries of the standard library: `use std.{module}`", entries.len())
             }
             Topic::Entry(entry) => entry.doc.clone(),
-            Topic::Response(response) => format!("a response, in {} in tables", response.unit()),
+            Topic::Response(response) => format!("{} (response, {})", response.doc(), unit(response)),
             Topic::Code(code) => match code.rule() {
                 Some(rule) => format!("{} (rule `{rule}`)", code.title()),
                 None => code.title().into(),
@@ -103,4 +103,12 @@ pub fn nearest_topic(name: &str) -> Option<String> {
     let responses = Response::ALL.iter().map(|response| response.name().to_string());
     let all: Vec<String> = kinds.chain(modules).chain(entries).chain(responses).collect();
     nearest(name, all.iter().map(String::as_str)).map(str::to_string)
+}
+
+/// The unit of a response in tables, in words.
+fn unit(response: &Response) -> String {
+    match response.unit() {
+        "1" => "a number".into(),
+        unit => format!("tables in {unit}"),
+    }
 }

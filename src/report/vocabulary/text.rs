@@ -14,7 +14,8 @@ pub(super) fn page(topic: &Topic) -> String {
         }
         Topic::Entry(entry) => entry_page(entry),
         Topic::Response(response) => {
-            format!("{}\n\n{}. `expect`, `study` and `record` take it.\n", response.name(), topic.meaning())
+            let (name, doc, unit) = (response.name(), response.doc(), super::unit(response));
+            format!("{name}: a response, {unit}\n\n  {doc}\n\nUse it in `expect`, `study` and `record`.\n")
         }
         Topic::Code(code) => code.page().to_string(),
     }
