@@ -96,7 +96,8 @@ fn every_command_of_the_documents_is_understood() {
             let given: Vec<&str> = given.iter().map(String::as_str).collect();
             let with = |more: &[&'static str]| cli::understands([&given[..], more].concat());
             let understood = with(&[]).or_else(|_| with(&["FILE"])).or_else(|_| with(&["--out", "DIR"]));
-            let understood = understood.or_else(|said| with(&["DIR", "DIR"]).map_err(|_| said));
+            let understood = understood.or_else(|_| with(&["DIR", "DIR"]));
+            let understood = understood.or_else(|_| with(&["FILE", "--measured", "CURVE"]));
             let understood = understood.or_else(|said| with(&["FILE", "--out", "DIR"]).map_err(|_| said));
             odd.extend(understood.err().map(|said| format!("{name}: `trackbed {code}`: {said}")));
             seen += 1;
