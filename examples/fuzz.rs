@@ -42,7 +42,7 @@ fn main() {
     let number = |text: Option<&String>| text.and_then(|t| t.parse::<u64>().ok());
     let runs = number(arguments.get(1)).unwrap_or(1_000_000);
     let from = arguments.iter().position(|a| a == "--from").and_then(|i| number(arguments.get(i + 1))).unwrap_or(0);
-    let text: Option<(Text, fn(&str))> = match name {
+    let text: Option<(Text, Holds)> = match name {
         "parse" => Some((mutate::piece, targets::parse)),
         "format" => Some((mutate::piece, targets::format)),
         // names must be found, so that numbers are looked at
@@ -61,6 +61,8 @@ fn main() {
 
 /// Makes the text of a run.
 type Text = fn(&[&str], u64) -> String;
+/// Asserts what must hold of a text.
+type Holds = fn(&str);
 
 /// Texts on all cores.
 fn texts(name: &str, text: Text, target: fn(&str), runs: std::ops::Range<u64>) -> u64 {
