@@ -6,6 +6,7 @@ mod links;
 #[path = "../examples/book/pages.rs"]
 mod pages;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -27,7 +28,18 @@ fn markdown(folder: &Path) -> Vec<PathBuf> {
 fn targets(page: &str) -> Vec<&str> {
     let text = page.split("\n```").step_by(2);
     let links = text.flat_map(|text| text.split("](").skip(1).filter_map(|rest| rest.split_once(')')));
-    links.map(|(target, _)| target).filter(|target| !target.contains("://") && !target.starts_with('#')).collect()
+    links.map(|(target, _)| target).filter(|target| !target.contains("://")).collect()
+}
+
+/// Anchors of the headings of a page.
+fn anchors(page: &Path) -> BTreeSet<String> {
+    let text = fs::read_to_string(page).unwrap();
+    let headings = text.lines().filter(|line| line.starts_with('#'));
+    let anchor = |line: &str| {
+        let words = line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-");
+        words.chars().filter(|c| c.is_alphanumeric() || "-_".contains(*c)).collect()
+    };
+    headings.map(anchor).collect()
 }
 
 #[test]
@@ -38,9 +50,10 @@ fn every_link_of_the_book_leads_to_a_page() {
     for page in markdown(&folder.path().join("src")) {
         let text = fs::read_to_string(&page).unwrap();
         for target in targets(&text) {
-            let file = target.split('#').next().unwrap_or_default();
+            let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
+            let to = if file.is_empty() { page.clone() } else { page.parent().unwrap().join(file) };
             links += 1;
-            if !page.parent().unwrap().join(file).is_file() {
+            if !to.is_file() || !anchor.is_empty() && !anchors(&to).contains(anchor) {
                 broken.push(format!("{}: {target}", page.display()));
             }
         }

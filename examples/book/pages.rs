@@ -108,13 +108,14 @@ impl Book<'_> {
 
     /// A document of the project, under its first heading.
     fn document(&mut self, depth: usize, name: &str) -> io::Result<()> {
-        let has = |line: &Line| matches!(line, Line::Page(_, _, known) if known == name);
+        let place = in_the_book_as(name);
+        let has = |line: &Line| matches!(line, Line::Page(_, _, known) if *known == place);
         if self.lines.iter().any(has) {
             return Ok(());
         }
         let text = fs::read_to_string(self.root.join(name))?;
         let title = text.lines().find_map(|line| line.strip_prefix("# ")).unwrap_or(name).replace('`', "");
-        self.page(depth, &title, name, &with_links_to_the_book(&text))
+        self.page(depth, &title, &place, &with_links_to_the_book(&text))
     }
 
     /// The documents of a folder that have no place yet; its `README.md` first, the others below it.
@@ -286,7 +287,7 @@ fn with_links_to_the_book(text: &str) -> String {
         let Some(length) = rest[at..].find(')') else { break };
         let (before, target) = (&rest[..at], &rest[at + 2..at + length]);
         match in_the_book(target) {
-            true => out += &rest[..=at + length],
+            true => out += &format!("{before}]({})", in_the_book_as(target)),
             false => match before.rfind('[') {
                 Some(open) => out += &format!("{}{}", &before[..open], &before[open + 1..]),
                 None => out += before,
@@ -295,6 +296,11 @@ fn with_links_to_the_book(text: &str) -> String {
         rest = &rest[at + length + 1..];
     }
     out + rest
+}
+
+/// The place of a document in the book: `README.md` is the first page of its folder.
+fn in_the_book_as(document: &str) -> String {
+    document.replace("README.md", "index.md")
 }
 
 /// Whether the target of a link is a page or a file of the book.

@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     outcome
 }
 
-/// A scene with the diagnostics of the points of its studies; `None` if it cannot be read, which has been said.
+/// A scene with the diagnostics of the points of its studies; `None` if it cannot be read (an error was printed).
 fn checked(scene: &SceneArguments) -> Option<Compiled> {
     let modules = scene.remembered();
     let mut compiled = scene.compile_with(&modules)?;

@@ -1,4 +1,4 @@
-//! `trackbed completions`: what a shell completes after `trackbed`.
+//! `trackbed completions`: completion scripts for shells.
 
 use super::{Cli, Outcome, terminal};
 use clap::CommandFactory;

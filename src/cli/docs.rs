@@ -38,7 +38,7 @@ enum DocsFormat {
     Textmate,
 }
 
-/// What the command line asks for.
+/// The topics that the command line asks for.
 enum Asked {
     Everything,
     One(Topic),
@@ -96,7 +96,7 @@ fn human(asked: &Asked) -> String {
     }
 }
 
-/// What to write next.
+/// The last lines of the list of kinds.
 const HINT: &str =
     "`trackbed docs NAME` describes a kind (`sleeper`), a field (`usp.bedding_modulus`), a module of the standard
 library (`usps`), one of its entries (`usps.medium`) or a response (`settlement`).

@@ -1,4 +1,4 @@
-//! What a person sees: plain text where it is piped, colour on a terminal that wants it.
+//! Output to the terminal: plain text in pipes and files, colour on terminals.
 
 use crate::diag::{Diagnostic, Sources, render};
 use clap::ValueEnum;
@@ -15,7 +15,7 @@ pub(super) enum Colour {
     Never,
 }
 
-/// How the program speaks: options of every command.
+/// Colour and amount of output: options of every command.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]
 pub(super) struct Manner {
     /// When messages have colour
@@ -26,10 +26,10 @@ pub(super) struct Manner {
     quiet: bool,
 }
 
-/// The manner that the command line asked for.
+/// The options of the command line.
 static MANNER: OnceLock<Manner> = OnceLock::new();
 
-/// Sets how the program speaks, once, before anything is printed.
+/// Sets colour and amount of output, once, before anything is printed.
 pub(super) fn speak(manner: Manner) {
     let _ = MANNER.set(manner);
 }
@@ -43,10 +43,10 @@ pub(super) fn is_quiet() -> bool {
     manner().quiet
 }
 
-/// Why standard output has not taken all that was written, once it has not.
+/// The first error of standard output.
 static LOST: OnceLock<String> = OnceLock::new();
 
-/// Writes to standard output; a reader that has gone away is no mistake. What else goes wrong is told by [`lost`].
+/// Writes to standard output. A closed pipe is not an error; [`lost`] gives every other error.
 pub(super) fn out(text: &str) {
     let mut stdout = std::io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
@@ -64,7 +64,7 @@ pub(super) fn summary(text: &str) {
     }
 }
 
-/// Why something that was written to standard output is lost; `None` where all has arrived.
+/// The error that lost a part of standard output; `None` if everything was written.
 pub(super) fn lost() -> Option<&'static str> {
     LOST.get().map(String::as_str)
 }
@@ -81,7 +81,7 @@ pub(super) fn note(text: &str) {
     }
 }
 
-/// `error: ...` on standard error, for mistakes that stand in no file.
+/// `error: ...` on standard error, for mistakes that are not in a file.
 pub(super) fn error(text: &str) {
     say(&format!("error: {text}\n"));
 }
@@ -108,7 +108,7 @@ fn width() -> usize {
     std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok()).filter(|w| *w >= 40).unwrap_or(110).min(140)
 }
 
-/// Columns as wide as their widest cell: text to the left, numbers begin there too.
+/// A table with columns as wide as their widest cell, aligned to the left.
 pub(super) fn aligned(table: &[Vec<String>]) -> String {
     let columns = table.first().map_or(0, Vec::len);
     let width = |column: usize| table.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);

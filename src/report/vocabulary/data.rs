@@ -17,7 +17,7 @@ pub fn everything() -> Value {
     })
 }
 
-/// One topic; `topic` says of which sort it is.
+/// One topic; its field `topic` gives the kind of topic.
 pub(super) fn topic(topic: &Topic) -> Value {
     let (sort, data) = match topic {
         Topic::Kind(it) => ("kind", kind(it)),
@@ -84,7 +84,7 @@ fn bases(basis: &crate::schema::Basis) -> Vec<&'static str> {
     basis.names.iter().map(|(name, _)| *name).collect()
 }
 
-/// The kind of the object that may stand in a form.
+/// The kind of the object in a form.
 fn object(form: &Form) -> Option<&'static str> {
     match form {
         Form::Object(kind) => Some(kind),

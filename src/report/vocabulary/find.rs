@@ -6,7 +6,8 @@ use crate::diag::Code;
 use crate::scenario::response::Response;
 use crate::schema::{Form, KINDS, Kind};
 
-/// Everything in whose name or meaning each of the words stands, in the order of the vocabulary; names before meanings.
+/// Topics with every word in their name, then topics with every word in their name or meaning, in the order of the
+/// vocabulary.
 pub(super) fn found(words: &str) -> Vec<Topic> {
     let words: Vec<String> = words.split_whitespace().map(plain).collect();
     if words.is_empty() {
@@ -30,7 +31,7 @@ fn plain(text: &str) -> String {
     text.to_lowercase().replace('_', " ")
 }
 
-/// Everything that can be found.
+/// All topics.
 fn all() -> Vec<Topic> {
     let kinds = KINDS.iter().map(Topic::Kind);
     let fields =
@@ -49,12 +50,12 @@ fn all() -> Vec<Topic> {
         .collect()
 }
 
-/// The text in which a word is looked for, beside the name.
+/// The text of a topic that is searched in addition to its name.
 fn searched(topic: &Topic) -> String {
     match topic {
         Topic::Field(_, field) => format!("{} {}", field.doc, words(&field.form)),
         Topic::Entry(entry) => format!("{} {}", entry.doc, entry.source),
-        // what the entries say finds the entries
+        // the texts of its entries lead to the entries
         Topic::Module(..) => String::new(),
         other => other.meaning(),
     }

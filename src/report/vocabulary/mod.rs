@@ -1,5 +1,5 @@
-//! The vocabulary as a person asks for it: everything, one thing by its name, or all that a word finds; as text and as
-//! data.
+//! The vocabulary of the language for `trackbed docs`: all topics, one topic by name, or the topics with a word; as
+//! text and as JSON.
 
 mod data;
 mod find;
@@ -13,7 +13,7 @@ use crate::schema::{self, Field, KINDS, Kind};
 pub use data::everything as vocabulary;
 use serde_json::Value;
 
-/// One thing that the language knows.
+/// One item of the vocabulary.
 #[derive(Debug, Clone)]
 pub enum Topic {
     Kind(&'static Kind),
@@ -26,7 +26,7 @@ pub enum Topic {
 }
 
 impl Topic {
-    /// The thing of that name: `usp`, `usp.bedding_modulus`, `usps`, `usps.medium`, `settlement`, `E0302`,
+    /// The topic with this name: `usp`, `usp.bedding_modulus`, `usps`, `usps.medium`, `settlement`, `E0302`,
     /// `stiffness_jump`.
     pub fn named(name: &str) -> Option<Topic> {
         let kind = || schema::kind(name).map(Topic::Kind);
@@ -45,12 +45,12 @@ impl Topic {
         kind().or_else(module).or_else(part).or_else(response).or_else(code)
     }
 
-    /// Everything that holds that word in its name or its meaning, names first.
+    /// Topics with this word in their name or meaning, names first.
     pub fn found(word: &str) -> Vec<Topic> {
         find::found(word)
     }
 
-    /// The name that leads to it.
+    /// The name for [`Topic::named`].
     pub fn name(&self) -> String {
         match self {
             Topic::Kind(kind) => kind.name.into(),
@@ -62,7 +62,7 @@ impl Topic {
         }
     }
 
-    /// What it means, in a line.
+    /// The meaning in one line.
     pub fn meaning(&self) -> String {
         match self {
             Topic::Kind(kind) => kind.doc.into(),
@@ -79,23 +79,23 @@ impl Topic {
         }
     }
 
-    /// Everything about it, for a person.
+    /// The whole text about the topic.
     pub fn page(&self) -> String {
         text::page(self)
     }
 
-    /// The same as data.
+    /// The same as JSON.
     pub fn data(&self) -> Value {
         data::topic(self)
     }
 }
 
-/// Topics in a line each, under a heading for each sort.
+/// One line per topic, under a heading for each kind of topic.
 pub fn listing(topics: &[Topic]) -> String {
     text::listing(topics)
 }
 
-/// The name of a topic that is written nearly so.
+/// The name of the topic that is nearest to a misspelt name.
 pub fn nearest_topic(name: &str) -> Option<String> {
     let kinds = KINDS.iter().map(|kind| kind.name.to_string());
     let modules = LIBRARY.iter().map(|(module, _)| (*module).to_string());

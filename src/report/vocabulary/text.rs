@@ -39,7 +39,7 @@ fn entry_page(entry: &Entry) -> String {
     out
 }
 
-/// The entry that another one extends.
+/// The entry that this entry extends.
 fn base_of(entry: &Entry) -> Option<Entry> {
     let base = entry.base.as_deref()?;
     library().into_iter().find(|other| other.module == entry.module && other.name == base)
@@ -50,12 +50,12 @@ fn values(entry: &Entry) -> String {
     entry.fields.iter().map(|(path, value)| format!("  {path:<width$} = {value}\n")).collect()
 }
 
-/// An entry in a line: its name, its meaning and its first numbers.
+/// The name and the meaning of an entry.
 fn line(entry: &Entry) -> (String, String) {
     (format!("{}.{}", entry.module, entry.name), entry.doc.clone())
 }
 
-/// Topics in a line each, under a heading for each sort.
+/// One line per topic, under a heading for each kind of topic.
 pub(super) fn listing(topics: &[Topic]) -> String {
     let headings =
         ["Kinds", "Fields", "Modules of the standard library", "Entries of the standard library", "Responses", "Codes"];
@@ -67,7 +67,7 @@ pub(super) fn listing(topics: &[Topic]) -> String {
     sections.collect::<Vec<_>>().join("\n")
 }
 
-/// The place of the heading under which a topic stands.
+/// The index of the heading of a topic.
 fn sort_of(topic: &Topic) -> usize {
     match topic {
         Topic::Kind(_) => 0,
