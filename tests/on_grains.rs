@@ -248,9 +248,8 @@ fn vehicles_ride_on_the_rail_over_the_grains() {
     assert!(graph.is_ridden());
     let mut ridden = Heard::default();
     run(&graph, folder.path(), 2, &mut ridden, None);
-    for stop in [(0, 40), (1, 0), (1, 25)] {
-        stopped_and_resumed(&graph, folder.path(), stop, &ridden);
-    }
+    // in the middle of the second block: its books and what came before it go on. `examples/faults` stops anywhere
+    stopped_and_resumed(&graph, folder.path(), (1, 25), &ridden);
     tables_of_a_run_that_was_stopped(&text, folder.path());
     let on_grains = carried(&graph);
     let track = graph.track().unwrap();

@@ -17,6 +17,7 @@ mod draw;
 mod memory;
 mod tally;
 mod trial;
+#[path = "../../fuzz/watchdog.rs"]
 mod watchdog;
 
 use draw::{Aim, Known};
@@ -26,6 +27,8 @@ use tally::Tally;
 use trial::Outcome;
 use watchdog::Watchdog;
 
+/// A scene that takes longer hangs: plans of more than a minute are not run.
+const LONGEST: Duration = Duration::from_secs(600);
 /// Time between two lines of progress.
 const PAUSE: Duration = Duration::from_secs(20);
 
@@ -51,17 +54,17 @@ fn main() {
         "grains" => Box::new(trial::run(root, 20.0)),
         "show" => return show(root, &draw::scene(&known, trial::aim(count), count)),
         "show-law" => return show(root, &draw::scene(&known, Aim::Law, count)),
-        "show-grains" => return show(root, &draw::scene(&known, Aim::Rig, count)),
+        "show-grains" => return show(root, &draw::scene(&known, trial::grains(count), count)),
         other => return eprintln!("nothing is known of `{other}`"),
     };
     let aim = |number: u64| match what.as_str() {
         "law" => Aim::Law,
-        "grains" => Aim::Rig,
+        "grains" => trial::grains(number),
         _ => trial::aim(number),
     };
     // a panic is an outcome
     std::panic::set_hook(Box::new(|_| ()));
-    let (watchdog, started) = (Watchdog::start(), Instant::now());
+    let (watchdog, started) = (Watchdog::start(LONGEST, |_| ()), Instant::now());
     let mut tally = Tally::default();
     let most = after("--seconds").map_or(Duration::MAX, Duration::from_secs);
     let (mut scenes, mut done, mut told) = (0, 0, Duration::ZERO);
@@ -69,9 +72,7 @@ fn main() {
     while done < count && started.elapsed() < most {
         let k = from + scenes;
         let text = draw::scene(&known, aim(k), k);
-        watchdog.begins(k);
-        let outcome = trial(k, &text);
-        watchdog.ends();
+        let outcome = watchdog.watched(k, || trial(k, &text));
         scenes += 1;
         done += u64::from(what == "check" || outcome.has_begun());
         if let Some(why) = outcome.failure() {

@@ -2,13 +2,18 @@
 
 use crate::diag::has_errors;
 use crate::execute::{Event, Executor, Listener};
+use crate::graph::Graph;
 use crate::lower::Planner;
+use crate::lower::memo::Memo;
 use crate::scenario::{Given, Scenario, Tier, Update};
 use std::ops::ControlFlow;
 
 /// Blocks for the law: six passages for five hundred axles, because only the shape of the result is used.
 const FIRST: u64 = 4;
 const RATIO: f64 = 3.0;
+
+/// Settlements of the last plans: the run of the law is the longest part of a check.
+static SETTLED: Memo<Graph, Option<Vec<f64>>> = Memo::new(4);
 
 /// Settlement of every seat after all axles by the law of a scene with `cells` or `zone`, m; `None` for any other
 /// scene, and if the law cannot run.
@@ -23,8 +28,12 @@ pub fn settlement(planner: &Planner, scenario: &Scenario) -> Option<Vec<f64>> {
     by_law.records.clear();
     let lowered = planner.lower(&by_law);
     let graph = lowered.graph.filter(|graph| graph.runs && !has_errors(&lowered.diagnostics))?;
+    SETTLED.get(graph, run)
+}
+
+fn run(graph: &Graph) -> Option<Vec<f64>> {
     let mut last = Last(None);
-    Executor::default().run(&graph, &mut last, None).ok()?;
+    Executor::default().run(graph, &mut last, None).ok()?;
     last.0
 }
 

@@ -76,9 +76,9 @@ pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunErro
 /// and no linear track model is valid.
 const SUNK: f64 = 0.5;
 
-/// Fails if the settlement (m) of a seat is above the limit.
+/// Fails if the settlement (m) of a seat is above the limit, or no number.
 pub(super) fn bearable(axles: u64, settlement: &[f64]) -> Result<(), RunError> {
-    match settlement.iter().position(|settled| settled.abs() > SUNK) {
+    match settlement.iter().position(|settled| !(-SUNK..=SUNK).contains(settled)) {
         Some(seat) => Err(RunError::node(Clock::Axles(axles), NodeError::Sunk { seat, settlement: settlement[seat] })),
         None => Ok(()),
     }

@@ -82,16 +82,16 @@ pub enum BedUse {
 /// One bed for each different section with grains under its sleepers. Fails if the packer would refuse a bed.
 pub fn beds(scenario: &Scenario, use_of_it: BedUse) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
     let packings = if use_of_it == BedUse::Rig { scenario.solve.grains.repeats } else { 1 };
-    beds_of(scenario, use_of_it, &mut Clumps::made(scenario.solve.seed, packings))
+    beds_of(scenario, use_of_it, &Clumps::made(scenario.solve.seed, packings))
 }
 
 /// The same beds with spheres instead of clumps, because clumps take a tenth of a second to make. It does not report
 /// clumps that are too wide.
 pub(super) fn beds_of_spheres(scenario: &Scenario, use_of_it: BedUse) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
-    beds_of(scenario, use_of_it, &mut Clumps::spheres())
+    beds_of(scenario, use_of_it, &Clumps::spheres())
 }
 
-fn beds_of(scenario: &Scenario, use_of_it: BedUse, clumps: &mut Clumps) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
+fn beds_of(scenario: &Scenario, use_of_it: BedUse, clumps: &Clumps) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
     let mut found: Vec<BedPlan> = Vec::new();
     let mut wrong = Vec::new();
     for section in 0..scenario.track.sections.len() {
@@ -104,12 +104,7 @@ fn beds_of(scenario: &Scenario, use_of_it: BedUse, clumps: &mut Clumps) -> Resul
     if wrong.is_empty() { Ok(found) } else { Err(wrong) }
 }
 
-fn bed(
-    scenario: &Scenario,
-    number: usize,
-    use_of_it: BedUse,
-    clumps: &mut Clumps,
-) -> Result<Option<BedPlan>, Diagnostic> {
+fn bed(scenario: &Scenario, number: usize, use_of_it: BedUse, clumps: &Clumps) -> Result<Option<BedPlan>, Diagnostic> {
     let section = &scenario.track.sections[number];
     let middle = 0.5 * (section.start + section.end);
     let seed = scenario.solve.seed;

@@ -10,6 +10,7 @@ mod crib;
 mod dry_run;
 mod foundation;
 mod glue;
+pub(crate) mod memo;
 mod origins;
 mod outlook;
 mod pass;

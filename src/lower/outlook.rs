@@ -2,14 +2,18 @@
 //! blocks are chosen as in the run, on the track beside its transitions under standing wheels.
 
 use super::dry_run::DryRun;
+use super::memo::Memo;
 use crate::graph::{Blocks, Runner, SupportNode, TrackNode};
 use crate::solvers::settlement::Law;
 
 /// Number of adaptive blocks that are computed one by one; later blocks are extrapolated.
 const FOLLOWED: u64 = 120;
 
+/// Estimates of the last plans with adaptive blocks.
+static ADAPTIVE: Memo<(TrackNode, Vec<SupportNode>, Law, Blocks), Outlook> = Memo::new(8);
+
 /// Blocks and passages of a run.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Outlook {
     pub blocks: u64,
     /// Axles of the shortest and of the longest block.
@@ -20,6 +24,14 @@ pub(super) struct Outlook {
 
 impl Outlook {
     pub fn new(track: &TrackNode, supports: &[SupportNode], law: &Law, blocks: &Blocks) -> Outlook {
+        if blocks.adaptive().is_none() {
+            return Outlook::made(track, supports, law, blocks);
+        }
+        let input = (track.clone(), supports.to_vec(), law.clone(), blocks.clone());
+        ADAPTIVE.get(input, |(track, supports, law, blocks)| Outlook::made(track, supports, law, blocks))
+    }
+
+    fn made(track: &TrackNode, supports: &[SupportNode], law: &Law, blocks: &Blocks) -> Outlook {
         let kinds = blocks.others.len() + 1;
         let mut outlook = Outlook { blocks: 0, axles: [u64::MAX, 0], passages: vec![0; kinds] };
         let mut dry = blocks.adaptive().map(|accuracy| DryRun::new(track, supports, law, blocks, accuracy));

@@ -144,6 +144,10 @@ impl Substructure for LawGround<'_> {
         if !fits {
             return Err(foreign("it holds other laws or another number of seats"));
         }
+        let settled = state.supports.iter().flatten().map(SupportState::settlement);
+        if !settled.chain(state.level.iter().flatten().copied()).all(f64::is_finite) {
+            return Err(foreign("it holds a settlement that is no number"));
+        }
         self.state = state;
         Ok(())
     }

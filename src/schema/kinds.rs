@@ -168,7 +168,7 @@ pub const KINDS: &[Kind] = &[
                 "thickness",
                 number("mm", 3.0, 30.0),
                 "10 mm",
-                "thickness of the pad, for the drawing and for its mass on grains",
+                "thickness of the pad, for the drawing and for its mass on grains (there at least 7 mm)",
             ),
         ],
         alternatives: &[],

@@ -78,7 +78,8 @@ pub(super) fn prepare(file: FileId, original: &str) -> (Option<Prepared<'_>>, Ve
         return (None, vec![beyond]);
     }
     let Draft { bytes, mut insertions, poisoned, diagnostics, .. } = draft;
-    insertions.sort_by_key(|(offset, _)| *offset);
+    // at one place, what was open is closed before something new opens
+    insertions.sort_by_key(|(offset, bracket)| (*offset, matches!(bracket, '(' | '[' | '{')));
     // Only whole characters were replaced; if this ever fails, the original text still gives the mistakes.
     let replaced = String::from_utf8(bytes).unwrap_or_else(|_| original.to_owned());
     let mut text = String::with_capacity(replaced.len() + insertions.len());

@@ -14,9 +14,18 @@ pub enum Aim {
     Rig,
     /// Trains over grains, to be planned and not run.
     Grains,
+    /// A load on a plate that covers a box of coarse grains: some hundred grains, so that it runs in seconds.
+    Plate,
 }
 
-use Aim::{Grains, Law, Rail, Rig};
+impl Aim {
+    /// Whether the load acts on grains without rails.
+    pub fn is_rig(self) -> bool {
+        RIGS.contains(&self)
+    }
+}
+
+use Aim::{Grains, Law, Plate, Rail, Rig};
 
 /// What an aim asks of a field; `None` and empty lists ask nothing.
 #[derive(Default)]
@@ -31,7 +40,8 @@ pub struct Want {
     pub items: Option<[usize; 2]>,
 }
 
-const ANY: &[Aim] = &[Law, Rail, Rig, Grains];
+const ANY: &[Aim] = &[Law, Rail, Rig, Grains, Plate];
+const RIGS: &[Aim] = &[Rig, Plate];
 const TRAINS: &[Aim] = &[Law, Grains];
 const RAILS: &[Aim] = &[Law, Rail, Grains];
 const NOTHING: Want = Want { chance: None, ranges: &[], only: &[], items: None };
@@ -62,7 +72,7 @@ const WANTS: &[(&str, &[Aim], Want)] = &[
     ("tamping", &[Law], often(0.15)),
     ("tamping", ANY, often(0.0)),
     ("study", &[Law], often(0.12)),
-    ("study", &[Rig], often(0.05)),
+    ("study", RIGS, often(0.05)),
     ("study", ANY, often(0.0)),
     ("solve", &[Law], often(0.8)),
     ("solve", ANY, often(1.0)),
@@ -71,26 +81,29 @@ const WANTS: &[(&str, &[Aim], Want)] = &[
     ("scenario", ANY, often(0.3)),
     // the track
     ("track.sections", &[Law, Rail], Want { items: Some([1, 3]), ranges: SECTIONS, ..NOTHING }),
-    ("track.sections", &[Rig], Want { items: Some([1, 1]), ranges: RIG_SECTIONS, only: &["sleepers"], chance: None }),
+    ("track.sections", RIGS, Want { items: Some([1, 1]), ranges: RIG_SECTIONS, only: &["sleepers"], chance: None }),
     ("track.sections", &[Grains], Want { items: Some([1, 2]), ranges: SECTIONS, ..NOTHING }),
     ("track.stretches", &[Law, Grains], often(0.25)),
     ("track.stretches", ANY, often(0.05)),
     ("track.irregularity", ANY, within(&[("mm", -2.0, 2.0)])),
+    ("track.bed_width", &[Plate], within(&[("m", 0.6, 0.9)])),
     ("track.bed_width", RAILS, within(&[("m", 3.2, 8.0)])),
-    ("track.bed_width", &[Rig], within(&[("m", 2.7, 3.2)])),
-    ("track.base", &[Rig], often(0.0)),
+    ("track.bed_width", RIGS, within(&[("m", 2.7, 3.2)])),
+    ("track.base", RIGS, often(0.0)),
     ("trackform.rail", RAILS, often(1.0)),
     ("trackform.pad", RAILS, often(1.0)),
     ("trackform.rail", ANY, often(0.0)),
     ("trackform.pad", ANY, often(0.0)),
+    ("trackform.sleeper", &[Plate], often(0.0)),
+    ("trackform.usp", &[Plate], often(0.0)),
     ("trackform.sleeper", ANY, often(1.0)),
     ("trackform.usp", ANY, often(0.15)),
     ("trackform.spacing", ANY, within(&[("m", 0.5, 0.75)])),
-    ("trackform.slab", &[Rig], often(0.0)),
-    ("trackform.support", &[Rig], often(0.0)),
+    ("trackform.slab", RIGS, often(0.0)),
+    ("trackform.support", RIGS, often(0.0)),
     (
         "trackform.layers",
-        &[Rig],
+        RIGS,
         Want { chance: Some(1.0), ranges: &[("m", 0.14, 0.22)], items: Some([1, 1]), only: &["granular"] },
     ),
     ("trackform.layers", ANY, Want { ranges: &[("m", 0.15, 2.0)], items: Some([1, 3]), ..NOTHING }),
@@ -98,7 +111,7 @@ const WANTS: &[(&str, &[Aim], Want)] = &[
     ("trackform.crib", ANY, within(&[("mm", 60.0, 150.0)])),
     ("trackform.shoulder", ANY, often(0.02)),
     ("trackform.settlement", ANY, within(&[("mm", 0.0, 5.0)])),
-    ("trackform.auxiliary_rails", &[Rig], often(0.0)),
+    ("trackform.auxiliary_rails", RIGS, often(0.0)),
     ("trackform.slab", RAILS, often(0.25)),
     ("trackform.auxiliary_rails", ANY, often(0.04)),
     ("sleeper.base_area", ANY, often(0.02)),
@@ -123,8 +136,9 @@ const WANTS: &[(&str, &[Aim], Want)] = &[
     ("traffic.trains", ANY, Want { items: Some([1, 2]), ..NOTHING }),
     ("traffic.total", ANY, Want { ranges: &[("axles", 16.0, 96.0), ("MGT", 1e-4, 2e-3)], ..NOTHING }),
     ("load.on", &[Rail], only(&["rail", "sleepers"])),
-    ("load.on", &[Rig], only(&["sleepers", "bed"])),
-    ("load.at", &[Rig], Want { items: Some([1, 1]), ..NOTHING }),
+    ("load.on", &[Plate], only(&["bed"])),
+    ("load.on", RIGS, only(&["sleepers", "bed"])),
+    ("load.at", RIGS, Want { items: Some([1, 1]), ..NOTHING }),
     ("load.force", &[Rail], Want { only: &["kN"], ranges: &[("kN", 1.0, 200.0)], ..NOTHING }),
     ("load.force.cyclic.range", ANY, within(&[("kN", 1.0, 60.0)])),
     ("load.force.cyclic.frequency", ANY, within(&[("Hz", 20.0, 60.0)])),
@@ -140,27 +154,27 @@ const WANTS: &[(&str, &[Aim], Want)] = &[
         Want { items: Some([1, 1]), ranges: &[("axles", 16.0, 48.0), ("MGT", 2e-4, 2e-3)], ..NOTHING },
     ),
     // grains, few and coarse where they are run
-    ("library.granular", &[Rig], often(0.0)),
-    ("library.grading", &[Rig], often(0.0)),
-    ("grading.passing:key", &[Rig], within(&[("mm", 55.0, 65.0)])),
-    ("grading.passing.log_normal.median", &[Rig], within(&[("mm", 60.0, 75.0)])),
-    ("grading.passing.log_normal.spread", &[Rig], within(&[("", 0.05, 0.2)])),
-    ("grading.cut_below", &[Rig], Want { chance: Some(0.15), ranges: &[("mm", 50.0, 58.0)], ..NOTHING }),
-    ("grading.cut_above", &[Rig], Want { chance: Some(0.15), ranges: &[("mm", 75.0, 90.0)], ..NOTHING }),
+    ("library.granular", RIGS, often(0.0)),
+    ("library.grading", RIGS, often(0.0)),
+    ("grading.passing:key", RIGS, within(&[("mm", 55.0, 65.0)])),
+    ("grading.passing.log_normal.median", RIGS, within(&[("mm", 60.0, 75.0)])),
+    ("grading.passing.log_normal.spread", RIGS, within(&[("", 0.05, 0.2)])),
+    ("grading.cut_below", RIGS, Want { chance: Some(0.15), ranges: &[("mm", 50.0, 58.0)], ..NOTHING }),
+    ("grading.cut_above", RIGS, Want { chance: Some(0.15), ranges: &[("mm", 75.0, 90.0)], ..NOTHING }),
     ("granular.youngs_modulus", RAILS, Want { chance: Some(1.0), ranges: &[("MPa", 80.0, 400.0)], ..NOTHING }),
     ("granular.contact_stiffness", ANY, often(1.0)),
-    ("granular.packing", &[Rig], often(1.0)),
-    ("granular.scale", &[Rig], within(&[("", 1.0, 1.3)])),
+    ("granular.packing", RIGS, often(1.0)),
+    ("granular.scale", RIGS, within(&[("", 1.0, 1.3)])),
     ("packing.lifts", ANY, within(&[("", 1.0, 2.0)])),
     ("packing.reloads", ANY, within(&[("", 0.0, 1.0)])),
-    ("packing.friction", &[Rig], Want { chance: Some(1.0), ranges: &[("", 0.0, 0.4)], ..NOTHING }),
+    ("packing.friction", RIGS, Want { chance: Some(1.0), ranges: &[("", 0.0, 0.4)], ..NOTHING }),
     ("granular.shape.clumps.templates", ANY, within(&[("", 1.0, 3.0)])),
     ("granular.shape.clumps.pebbles", ANY, within(&[("", 1.0, 4.0)])),
     ("random.cov", ANY, Want { chance: Some(1.0), ranges: &[("%", 0.5, 5.0)], ..NOTHING }),
     ("random.correlation", ANY, within(&[("m", 0.5, 10.0)])),
     // how it is solved
     ("solve.substructure", &[Law, Rail], only(&["auto", "law"])),
-    ("solve.substructure", &[Rig], Want { chance: Some(1.0), only: &["full"], ..NOTHING }),
+    ("solve.substructure", RIGS, Want { chance: Some(1.0), only: &["full"], ..NOTHING }),
     ("solve.substructure", &[Grains], Want { chance: Some(1.0), only: &["cells", "full", "zone"], ..NOTHING }),
     ("solve.elements_per_bay", ANY, Want { chance: Some(0.8), ranges: &[("", 1.0, 4.0)], ..NOTHING }),
     ("solve.time_step", ANY, Want { chance: Some(0.6), ranges: &[("s", 1e-4, 5e-4)], ..NOTHING }),
@@ -184,7 +198,7 @@ const WANTS: &[(&str, &[Aim], Want)] = &[
     // what is asked of it
     ("record.quantities", &[Law, Grains], Want { items: Some([1, 3]), only: OF_TRAINS, ..NOTHING }),
     ("record.quantities", &[Rail], Want { items: Some([1, 2]), only: OF_RAIL, ..NOTHING }),
-    ("record.quantities", &[Rig], Want { items: Some([1, 2]), only: OF_RIG, ..NOTHING }),
+    ("record.quantities", RIGS, Want { items: Some([1, 2]), only: OF_RIG, ..NOTHING }),
     ("record.at", ANY, often(0.7)),
     ("record.over", ANY, often(0.2)),
     (
@@ -203,7 +217,7 @@ const WANTS: &[(&str, &[Aim], Want)] = &[
     ("record.states", ANY, often(0.02)),
     ("expect.that", &[Law, Grains], only(OF_TRAINS)),
     ("expect.that", &[Rail], only(OF_RAIL)),
-    ("expect.that", &[Rig], only(OF_RIG)),
+    ("expect.that", RIGS, only(OF_RIG)),
     ("study.minimise", &[Law], only(OF_TRAINS)),
     ("study.maximise", &[Law], only(OF_TRAINS)),
     ("study.report", &[Law], only(OF_TRAINS)),

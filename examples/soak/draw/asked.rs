@@ -14,10 +14,10 @@ const NEAR: usize = 12;
 impl Drawing<'_> {
     /// A sleeper or a chainage near the first boundary.
     pub(super) fn place(&mut self) -> String {
-        let most = if self.aim == Aim::Rig { 1 } else { NEAR };
+        let most = if self.aim.is_rig() { 1 } else { NEAR };
         let number = self.between([1, most]);
         let sign = if self.sections > 1 && self.chance(0.6) { "-" } else { "" };
-        match self.aim != Aim::Rig && self.chance(0.2) {
+        match !self.aim.is_rig() && self.chance(0.2) {
             true => format!("{sign}{} m", plain(number as f64 * 0.5)),
             false => format!("{sign}{number} sleepers"),
         }
@@ -55,7 +55,7 @@ impl Drawing<'_> {
             return name.into();
         }
         let reduction = self.dice.pick(&["max", "min", "mean", "rms"]);
-        match self.transitions.len() < 2 && self.aim != Aim::Rig && self.chance(0.2) {
+        match self.transitions.len() < 2 && !self.aim.is_rig() && self.chance(0.2) {
             true => format!("{reduction}({name}, over = {})", self.span()),
             false => format!("{reduction}({name})"),
         }

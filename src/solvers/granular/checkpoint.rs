@@ -10,9 +10,9 @@ use super::failure::{Failure, Limits};
 use super::gravity::Gravity;
 use super::integrate::Tally;
 use super::lanes::Real;
-use super::law::{ContactLaw, ContactLaws};
+use super::law::{ContactLaw, ContactLaws, Dashpot};
 use super::record::Record;
-use super::vector::Vec3;
+use super::vector::{Vec3, dot, norm};
 use super::walls::{Kept, Wall};
 use serde::{Deserialize, Serialize};
 
@@ -60,6 +60,10 @@ struct Grain<R: Real> {
 
 /// Largest valid force, velocity and stiffness in SI units: their squares are finite in both precisions.
 const LARGEST: f64 = 1e15;
+/// Largest valid dashpot ratio and friction.
+const STRONGEST: f64 = 1e3;
+/// Largest part of a shear force that is normal to its contact plane / shear force.
+const TILTED: f64 = 0.5;
 /// Longest valid time step, s.
 const LONGEST: f64 = 1.0;
 /// Layout of a checkpoint; other layouts are refused.
@@ -224,6 +228,17 @@ impl<R: Real> Checkpoint<R> {
             ContactLaw::Linear(law) => [law.normal_stiffness, law.shear_stiffness],
             ContactLaw::HertzMindlin(law) => [law.effective_modulus, law.effective_shear_modulus],
         };
+        let in_plane = |kept: &Kept<R>| {
+            let shear = kept.shear.map(R::to_f64);
+            dot(shear, kept.normal).abs() <= TILTED * norm(shear)
+        };
+        let strong = |law: &ContactLaw| match law {
+            ContactLaw::Linear(law) => match law.dashpot {
+                Dashpot::Ratio { normal, shear } => [normal, shear, law.friction],
+                Dashpot::Constant { normal, shear } => [normal / LARGEST, shear / LARGEST, law.friction],
+            },
+            ContactLaw::HertzMindlin(law) => [0.0, 0.0, law.friction],
+        };
         self.pebbles.iter().all(|grain| grain.velocity.iter().chain(&grain.spin).all(real))
             && self.bodies.iter().all(|body| share(&body.inverse_mass) && share(&body.inverse_inertia))
             && self.clumps.iter().all(|clump| clump.turning.iter().all(|x| within(*x)))
@@ -231,9 +246,11 @@ impl<R: Real> Checkpoint<R> {
             && self.shear.iter().all(|carried| carried.shear.iter().chain(&carried.damping).all(real))
             && self.kept.iter().all(|kept| kept.shear.iter().chain(&kept.damping).all(real))
             && self.kept.iter().flat_map(|kept| &kept.normal).all(|x| x.is_finite())
+            && self.kept.iter().all(in_plane)
             && self.bonds.iter().all(|bond| bond.shear.iter().chain([&bond.start]).all(real))
             && self.walls.iter().all(of_walls)
             && self.laws.all().iter().flat_map(stiff).all(within)
+            && self.laws.all().iter().flat_map(strong).all(|x| x <= STRONGEST)
             && self.time.is_finite()
             && self.dt <= LONGEST
             && share(&self.skin)
