@@ -11,18 +11,27 @@ mod files;
 mod mutate;
 #[path = "../fuzz/targets.rs"]
 mod targets;
+#[path = "../fuzz/watchdog.rs"]
+mod watchdog;
 
 use std::path::Path;
+use std::time::Duration;
+use watchdog::Watchdog;
+
+/// A text or file that takes longer hangs, and ends the tests with its number.
+const LONGEST: Duration = Duration::from_secs(300);
 
 fn each(target: fn(&str)) {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus");
-    for entry in std::fs::read_dir(corpus).unwrap() {
+    let watchdog = Watchdog::start(LONGEST, |_| ());
+    for (number, entry) in std::fs::read_dir(corpus).unwrap().enumerate() {
         let path = entry.unwrap().path();
-        target(&std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())));
+        let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        watchdog.watched(number as u64, || target(&text));
     }
     let seeds = [include_str!("../scenarios/transition.track"), include_str!("../scenarios/static_check.track")];
-    (0..1500).for_each(|k| target(&mutate::text(&seeds, k)));
-    (0..1500).for_each(|k| target(&mutate::piece(&seeds, k)));
+    (0..1500).for_each(|k| watchdog.watched(k, || target(&mutate::text(&seeds, k))));
+    (0..1500).for_each(|k| watchdog.watched(k, || target(&mutate::piece(&seeds, k))));
 }
 
 #[test]
@@ -44,6 +53,7 @@ fn checking_survives() {
 fn each_file(name: &str, runs: u64) {
     let target = files::Target::named(name).unwrap();
     target.read_seeds();
+    let watchdog = Watchdog::start(LONGEST, |_| ());
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/files");
     for entry in std::fs::read_dir(corpus).unwrap() {
         let path = entry.unwrap().path();
@@ -51,12 +61,12 @@ fn each_file(name: &str, runs: u64) {
         let mut parts = file.split('-');
         if parts.next() == Some(name) {
             let seed = parts.next().and_then(|part| part.parse().ok()).unwrap();
-            target.read(seed, &std::fs::read(&path).unwrap());
+            watchdog.watched(0, || target.read(seed, &std::fs::read(&path).unwrap()));
         }
     }
     for k in 0..runs {
         let (seed, bytes) = target.file(k);
-        target.read(seed, &bytes);
+        watchdog.watched(k, || target.read(seed, &bytes));
     }
 }
 

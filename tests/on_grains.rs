@@ -296,6 +296,17 @@ fn planned(text: &str, without: &[&str]) -> (Option<String>, GrainsNode) {
     (said, grains.unwrap().clone())
 }
 
+/// A check runs the law of a scene for its bays, but no longer than 20 s.
+#[test]
+fn a_law_that_runs_for_long_does_not_choose_the_bays() {
+    let zone = SCENE.replace("substructure = full", "substructure = zone").replace("open: 18 m", "open: 180 m");
+    let fast = planned(&zone, &[]).0.unwrap();
+    assert!(!fast.contains("within 10 m of a transition"), "{fast}");
+    let at_walking_pace = zone.replace("200 km/h", "1 km/h");
+    assert_ne!(zone, at_walking_pace);
+    assert_eq!(planned(&at_walking_pace, &[]).0.unwrap(), "grains within 10 m of a transition");
+}
+
 #[test]
 fn zone_has_grains_where_the_law_differs_from_the_far_field() {
     let wide = SCENE.replace("open: 18 m", "open: 30 m").replace("window = -1.8 .. 1.2 m", "window = -15 .. 1.2 m");

@@ -12,11 +12,14 @@ use std::ops::ControlFlow;
 const FIRST: u64 = 4;
 const RATIO: f64 = 3.0;
 
+/// Longest run of the law, s on one core: a check must stay short, also of a train at walking pace.
+const LONGEST: f64 = 20.0;
+
 /// Settlements of the last plans: the run of the law is the longest part of a check.
 static SETTLED: Memo<Graph, Option<Vec<f64>>> = Memo::new(4);
 
 /// Settlement of every seat after all axles by the law of a scene with `cells` or `zone`, m; `None` for any other
-/// scene, and if the law cannot run.
+/// scene, and if the law cannot run in [`LONGEST`].
 pub fn settlement(planner: &Planner, scenario: &Scenario) -> Option<Vec<f64>> {
     let grains = &scenario.solve.grains;
     if !matches!(*grains.tier, Tier::Cells | Tier::Zone) {
@@ -27,7 +30,8 @@ pub fn settlement(planner: &Planner, scenario: &Scenario) -> Option<Vec<f64>> {
     by_law.solve.update = Update::Geometric { first: FIRST, ratio: RATIO };
     by_law.records.clear();
     let lowered = planner.lower(&by_law);
-    let graph = lowered.graph.filter(|graph| graph.runs && !has_errors(&lowered.diagnostics))?;
+    let runs = |graph: &Graph| graph.runs && graph.cost.seconds <= LONGEST && !has_errors(&lowered.diagnostics);
+    let graph = lowered.graph.as_ref().filter(|graph| runs(graph))?.clone();
     SETTLED.get(graph, run)
 }
 

@@ -51,7 +51,7 @@ impl Pass for Bays {
             draft.decide(
                 self.name(),
                 what,
-                "no settlement law can run this scene, so the sleepers that settle differently are not known",
+                "no settlement law runs this scene within 20 s, so the sleepers that settle differently are not known",
             );
             return;
         };

@@ -104,7 +104,7 @@ const WANTS: &[(&str, &[Aim], Want)] = &[
     (
         "trackform.layers",
         RIGS,
-        Want { chance: Some(1.0), ranges: &[("m", 0.14, 0.22)], items: Some([1, 1]), only: &["granular"] },
+        Want { chance: Some(1.0), ranges: &[("m", 0.14, 0.22)], items: Some([1, 1]), only: &["granular", "m"] },
     ),
     ("trackform.layers", ANY, Want { ranges: &[("m", 0.15, 2.0)], items: Some([1, 3]), ..NOTHING }),
     ("trackform.crib", RAILS, often(0.02)),

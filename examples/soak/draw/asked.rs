@@ -1,7 +1,7 @@
 //! Places, and what is asked of a scene: responses, comparisons, rules and studies.
 
 use super::Drawing;
-use super::aim::{Aim, want};
+use super::aim::want;
 use super::number::plain;
 use trackbed::diag::Code;
 use trackbed::scenario::response::{Place, Response};

@@ -197,13 +197,20 @@ fn pebbles_of(shape: &Shape) -> f64 {
     }
 }
 
+/// Pressure at which the stiffness of a Hertz contact is estimated, Pa: ballast under a wheel.
+const HERTZ_PRESSURE: f64 = 2e5;
+
 /// sqrt(m / k) of the lightest grain on one contact, s.
 fn lightest(granular: &Granular, curve: &Curve) -> f64 {
     let mass = *granular.density * PI / 6.0 * curve.ends()[0].powi(3);
     let stiffness = match granular.contact {
         Contact::Linear { stiffness } => *stiffness * granular.shear_ratio.max(1.0),
-        // beds of grains with Hertz contacts are refused before the run
-        Contact::Hertz { .. } => return f64::INFINITY,
+        // k = (6 E*^2 R F)^(1/3) (Johnson 1985, 4.2); such beds are refused before the run, but their plan is shown
+        Contact::Hertz { youngs_modulus, poisson_ratio } => {
+            let effective = *youngs_modulus / (2.0 * (1.0 - *poisson_ratio * *poisson_ratio));
+            let size = curve.ends()[0];
+            (6.0 * effective * effective * (size / 4.0) * HERTZ_PRESSURE * size * size).cbrt()
+        }
     };
     (mass / stiffness).sqrt()
 }
