@@ -83,10 +83,14 @@ impl<'p> Builder<'p> {
         let value = self.given(&mut parts)?.0;
         if self.diagnostics.len() == known {
             let text = first_line(self.text(start, end));
+            let mut declared = None;
             let (message, help) = if let ValueKind::Object { base: Some(kind), .. } = &value.kind
                 && let ([name], [kind]) = (path.names.as_slice(), kind.names.as_slice())
             {
-                ("`=` in the header of a declaration", format!("write `{} {} {{`", kind.text, name.text))
+                let header = format!("{} {}", kind.text, name.text);
+                let help = format!("write `{header} {{`");
+                declared = Some(Fix::replace(name.span.to(kind.span), header).titled(help.as_str()));
+                ("`=` in the header of a declaration", help)
             } else if let (ValueKind::Object { base: None, .. }, [name]) = (&value.kind, path.names.as_slice()) {
                 ("`=` in the header of a declaration", format!("write `{} {{`, without `=`", name.text))
             } else if path.names.len() == 1 {
@@ -97,7 +101,8 @@ impl<'p> Builder<'p> {
             let mistake = Diagnostic::new(Code::E0105, message).label(path.span, "");
             let before = Span { end: path.span.start, ..path.span };
             let fix = Fix::replace(before, "let ").titled(help.as_str());
-            self.report(mistake.maybe_fix(help.starts_with("write `let ").then_some(fix)).help(help));
+            let fix = declared.or_else(|| help.starts_with("write `let ").then_some(fix));
+            self.report(mistake.maybe_fix(fix).help(help));
         }
         let span = path.span.to(value.span);
         let name = path.names.into_iter().next()?;
@@ -132,23 +137,25 @@ impl<'p> Builder<'p> {
             return false;
         }
         let word = Name { text: text.to_owned(), span: self.span(start, start + text.len()) };
-        let (extra, help) = match (names.as_slice(), &base) {
+        // the word that is too many, and where what follows it begins
+        let (extra, next, help) = match (names.as_slice(), &base) {
             ([first, kind], None) if OPENERS.contains(&first.text.as_str()) => {
-                let help = format!("write `{} {text} {{`", kind.text);
+                let (help, next) = (format!("write `{} {text} {{`", kind.text), kind.span.start);
                 let extra = names.remove(0);
                 names.push(word);
-                (extra, help)
+                (extra, next, help)
             }
             ([kind, name], Some(said)) if said.names.len() == 1 && said.names[0].text == kind.text => {
                 let help = format!("write `{} {} : {text} {{`", kind.text, name.text);
-                let said = said.names[0].clone();
+                let (said, next) = (said.names[0].clone(), word.span.start);
                 *base = Some(Path { span: word.span, names: vec![word] });
-                (said, help)
+                (said, next, help)
             }
             _ => return false,
         };
         let message = format!("`{}` is not allowed in the header of a declaration", extra.text);
-        self.report(Diagnostic::new(Code::E0105, message).label(extra.span, "").help(help));
+        let fix = Fix::replace(Span { end: next, ..extra.span }, "").titled(format!("remove `{}`", extra.text));
+        self.report(Diagnostic::new(Code::E0105, message).label(extra.span, "").help(help).fix(fix));
         true
     }
 
@@ -217,8 +224,12 @@ impl<'p> Builder<'p> {
             let mistake = Diagnostic::new(Code::E0105, "`=` in the header of a declaration");
             let sign = self.span_of(&equals);
             let text = if base.is_some() { ":" } else { "" };
-            let fix = Fix::replace(sign, text).titled(help.as_str());
-            self.report(mistake.label(sign, "").maybe_fix((!help.contains("`let ")).then_some(fix)).help(help));
+            // a word of another language in the place of `let`, or `=` in the place of `:`
+            let fix = match help.contains("`let ") {
+                true => Fix::replace(kind.span, "let"),
+                false => Fix::replace(sign, text),
+            };
+            self.report(mistake.label(sign, "").fix(fix.titled(help.as_str())).help(help));
         }
         Some(Declaration { kind, name: Some(name), base, fields, docs, span })
     }

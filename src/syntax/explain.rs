@@ -12,7 +12,7 @@ use super::tree::{Name, Path};
 use crate::diag::{Code, Diagnostic, Fix};
 
 /// Help for an unreadable part.
-enum Way {
+pub(super) enum Way {
     Say(String),
     /// The reason, and the text to write instead of its first line.
     Write(&'static str, String),
@@ -113,8 +113,8 @@ impl<'p> Builder<'p> {
         let text: &'p str = &self.prepared.text;
         let part = first_line(&text[start..end]);
         let word = found.map_or("", |t| t.text(text));
-        if let Some(help) = self.habit(exact, start, part, found) {
-            return Some(Way::Say(help));
+        if let Some(way) = self.habit(exact, start, part, found) {
+            return Some(way);
         }
         let say = |help: &str| Some(Way::Say(help.to_owned()));
         let opens = |sign: &str| matches!(sign, "+" | "*" | "/" | "^" | ".." | "<" | ">" | "<=" | ">=" | "per");

@@ -1,26 +1,28 @@
 //! Help for spellings of other languages and spreadsheets that are found at one sign or word.
 
 use super::builder::Builder;
+use super::explain::Way;
 use super::grammar::Rule;
 use super::token::{Kind, Token};
 
 impl Builder<'_> {
     /// Help for a part that begins at `start` and cannot be read from `found` on.
-    pub fn habit(&self, exact: Rule, start: usize, part: &str, found: Option<Token>) -> Option<String> {
+    pub fn habit(&self, exact: Rule, start: usize, part: &str, found: Option<Token>) -> Option<Way> {
         let text = &self.prepared.text;
         let found = found?;
         let word = found.text(text);
         let (before, after) = (text[start..found.start.max(start)].trim(), &text[found.end..]);
         let rest = part.get(found.start.saturating_sub(start)..).unwrap_or_default();
         let digit = |c: char| c.is_ascii_digit();
-        if let Some(help) = unit_or_remark(word, before, rest, after) {
-            return Some(help);
+        if let Some(way) = unit_or_remark(word, before, rest, after) {
+            return Some(way);
         }
+        let said = |help: String| Some(Way::Say(help));
         let compares = part.contains(['<', '>']) && !part.contains('=');
         if exact == Rule::exact_field && (compares || part.starts_with('[')) {
             return Some(match part.starts_with('[') {
-                true => format!("a list is given to a field: write `that = {part}`"),
-                false => format!("a comparison is given to `that`: write `that = [{part}]`"),
+                true => Way::Write("a list is given to a field: ", format!("that = {part}")),
+                false => Way::Write("a comparison is given to `that`: ", format!("that = [{part}]")),
             });
         }
         let fixed = match word {
@@ -57,34 +59,34 @@ impl Builder<'_> {
             _ => "",
         };
         if !fixed.is_empty() {
-            return Some(fixed.to_owned());
+            return said(fixed.to_owned());
         }
         let value = exact == Rule::exact_value || exact == Rule::exact_argument;
         if let Some(help) = library_name(word, before, found).filter(|_| value) {
-            return Some(help);
+            return said(help);
         }
         let equals = after.trim_start().starts_with('=') && !after.trim_start().starts_with("==");
         if value && found.kind == Kind::Word && !before.is_empty() && equals {
-            return Some(format!("write `, {word}`"));
+            return said(format!("write `, {word}`"));
         }
         if exact == Rule::exact_item && part.starts_with("expect ") && part.contains(['<', '>']) {
-            return Some(format!("write `expect {{ that = [{}] }}`", part["expect".len()..].trim()));
+            return Some(Way::Write("", format!("expect {{ that = [{}] }}", part["expect".len()..].trim())));
         }
         if exact == Rule::exact_item && part.starts_with("from ") && part.contains(" import ") {
             let module = part.split_whitespace().nth(1).unwrap_or_default();
-            return Some(format!("write `use {module}`"));
+            return Some(Way::Write("", format!("use {module}")));
         }
         let plain = |text: &str| {
             text.split_whitespace().count() >= 2 && text.chars().all(|c| c.is_alphabetic() || "',- ".contains(c))
         };
         let behind_key = part.split_once(':').map_or("", |(_, text)| text.trim());
         if exact == Rule::exact_entry && plain(behind_key) && behind_key.split_whitespace().count() > 2 {
-            return Some(format!("a text needs quotes: write `\"{behind_key}\"`"));
+            return said(format!("a text needs quotes: write `\"{behind_key}\"`"));
         }
         let name = !before.is_empty() && before.chars().all(|c| c.is_ascii_alphanumeric() || "_.".contains(c));
         let named = name && before.starts_with(|c: char| c.is_ascii_alphabetic());
         if exact == Rule::exact_entry && part.contains(['<', '>']) && named {
-            return Some(match before {
+            return said(match before {
                 "not" => "there is no `not`: reverse the comparison".to_owned(),
                 "if" | "when" | "assert" | "that" => format!("write the comparison without `{before}`"),
                 _ => format!("put arguments in parentheses: `{before}(...)`"),
@@ -92,23 +94,23 @@ impl Builder<'_> {
         }
         match word {
             "=" if value && named && before.contains('.') => {
-                Some(format!("pairs need brackets: write `[{before}: {}]`", rest.trim_start_matches('=').trim()))
+                said(format!("pairs need brackets: write `[{before}: {}]`", rest.trim_start_matches('=').trim()))
             }
-            "=" if value && named => Some(match self.path_before(start) {
+            "=" if value && named => said(match self.path_before(start) {
                 Some(path) => format!("write `{path}.{before} {rest}`, or `{path} = {{ {before} {rest} }}`"),
                 None => format!("write `{before} {rest}` alone"),
             }),
             ":" if exact == Rule::exact_entry && before.starts_with(digit) && after.starts_with(digit) => {
                 let mut parts = part.split(':');
                 let (from, step, to) = (parts.next()?, parts.next()?, parts.next()?);
-                Some(format!(
+                said(format!(
                     "from one value to another in steps: `steps({from} .. {to}, by = {step})`, each with its unit"
                 ))
             }
-            ":" if exact == Rule::exact_entry && before.contains(':') => Some("separate pairs by commas".to_owned()),
+            ":" if exact == Rule::exact_entry && before.contains(':') => said("separate pairs by commas".to_owned()),
             ":" if value && !before.is_empty() => {
                 let line = self.items_of_line(start);
-                Some(match before.trim_start_matches(['-', '+']).chars().all(|c| c.is_ascii_digit()) {
+                said(match before.trim_start_matches(['-', '+']).chars().all(|c| c.is_ascii_digit()) {
                     true => "a span is written `-20 .. -1 sleepers`, several values are written in brackets".to_owned(),
                     false => format!("pairs need brackets: write `[{line}]`"),
                 })
@@ -116,38 +118,38 @@ impl Builder<'_> {
             "'" if before.ends_with(digit) && !after.starts_with(digit) => {
                 let feet: f64 = before.rsplit([' ', '=']).next()?.parse().ok()?;
                 let metres = crate::units::number(0.3048 * feet);
-                Some(format!("a length in feet? {feet} ft are {metres} m (1 ft = 0.3048 m)"))
+                said(format!("a length in feet? {feet} ft are {metres} m (1 ft = 0.3048 m)"))
             }
-            "'" if before.ends_with(digit) => Some(format!("group digits by `_`: `{before}_{}`", &rest[1..])),
-            "·" | "x" if before.ends_with(digit) => Some("write powers of ten in the number: `4e7 N/m`".to_owned()),
+            "'" if before.ends_with(digit) => said(format!("group digits by `_`: `{before}_{}`", &rest[1..])),
+            "·" | "x" if before.ends_with(digit) => said("write powers of ten in the number: `4e7 N/m`".to_owned()),
             _ if exact == Rule::exact_field => habit_of_field(part),
             _ if !value => None,
             _ if before.starts_with('"') && before.ends_with('"') && before[1..].starts_with(digit) => {
-                Some(format!("numbers have no quotes: write `{} {rest}`", &before[1..before.len() - 1]))
+                Some(Way::Write("numbers have no quotes: ", format!("{} {rest}", &before[1..before.len() - 1])))
             }
             _ if before.starts_with('(') && before.ends_with(')') => {
                 let inner = before[1..before.len() - 1].trim();
-                Some(format!("a unit follows its number: write `{inner} {rest}`"))
+                Some(Way::Write("a unit follows its number: ", format!("{inner} {rest}")))
             }
             _ if found.kind == Kind::Number && before.ends_with(" x") => {
-                Some("write powers of ten in the number: `4e7 N/m`".to_owned())
+                said("write powers of ten in the number: `4e7 N/m`".to_owned())
             }
             _ if found.kind == Kind::Number
                 && before.chars().all(|c| c.is_ascii_digit() || c == '_')
                 && !before.is_empty() =>
             {
-                Some(format!("group digits by `_`: `{before}_{rest}`"))
+                said(format!("group digits by `_`: `{before}_{rest}`"))
             }
-            _ if found.kind == Kind::Number && named => Some(format!(
+            _ if found.kind == Kind::Number && named => said(format!(
                 "put arguments in parentheses, `{before}(...)`, and fields in braces, `{{ name = value }}`"
             )),
             _ if found.kind == Kind::Word
                 && before.chars().all(|c| c.is_ascii_digit() || c == '.')
                 && !before.is_empty() =>
             {
-                Some(format!("a product needs its sign: `{before} * {rest}`"))
+                said(format!("a product needs its sign: `{before} * {rest}`"))
             }
-            _ if word == "(" && named => Some(format!("put fields in braces: `{before} {{ name = value }}`")),
+            _ if word == "(" && named => said(format!("put fields in braces: `{before} {{ name = value }}`")),
             _ => None,
         }
     }
@@ -161,12 +163,12 @@ impl Builder<'_> {
 }
 
 /// Help for a field whose name or sign is wrong.
-fn habit_of_field(part: &str) -> Option<String> {
+fn habit_of_field(part: &str) -> Option<Way> {
     if part.starts_with('"') {
-        return Some("names have no quotes, and fields are given with `=`".to_owned());
+        return Some(Way::Say("names have no quotes, and fields are given with `=`".to_owned()));
     }
     if let Some(field) = part.strip_prefix("- ") {
-        return Some(format!("write `{}`, without the dash", field.trim_start()));
+        return Some(Way::Write("a field has no dash before it: ", field.trim_start().to_owned()));
     }
     if part.starts_with("let ") || part.starts_with("use ") {
         return None;
@@ -175,34 +177,39 @@ fn habit_of_field(part: &str) -> Option<String> {
     let name = name.trim();
     if let Some((path, first)) = name.split_once('(').filter(|(path, _)| !path.is_empty()) {
         let fields = format!("{first}={value}");
-        return Some(format!("write `{path} = {{ {} }}`", fields.trim_end().trim_end_matches(')')));
+        return Some(Way::Write("", format!("{path} = {{ {} }}", fields.trim_end().trim_end_matches(')'))));
     }
-    let (sign, what) =
-        [('\'', "quotes"), ('-', "dashes"), (' ', "blanks")].into_iter().find(|(c, _)| name.contains(*c))?;
+    let (sign, why) =
+        [('\'', "a name has no quotes: "), ('-', "a name has no dashes: "), (' ', "a name has no blanks: ")]
+            .into_iter()
+            .find(|(c, _)| name.contains(*c))?;
     let letters = name.chars().all(|c| c.is_ascii_alphanumeric() || "_' -".contains(c));
     let words = if sign == '\'' { name.replace('\'', "") } else { name.to_owned() };
     let joined = words.split([' ', '-']).collect::<Vec<_>>().join("_");
-    letters.then(|| format!("a name has no {what}: write `{joined} = {}`", value.trim()))
+    letters.then(|| Way::Write(why, format!("{joined} = {}", value.trim())))
 }
 
 /// Help for units in another spelling, and for remarks, that are found at one sign.
-fn unit_or_remark(word: &str, before: &str, rest: &str, after: &str) -> Option<String> {
+fn unit_or_remark(word: &str, before: &str, rest: &str, after: &str) -> Option<Way> {
     let digit = |c: char| c.is_ascii_digit();
     let number = before.starts_with(|c: char| c.is_ascii_digit() || c == '-');
     let rest = rest.trim_end();
     match word {
         "\\" if number && after.starts_with(char::is_alphabetic) => {
-            Some(format!("write `{before}/{}`", rest.trim_start_matches('\\')))
+            Some(Way::Write("", format!("{before}/{}", rest.trim_start_matches('\\'))))
         }
-        "." if number && before.ends_with(char::is_alphabetic) && after.starts_with(char::is_alphabetic) => Some(
-            format!("separate the factors of a unit by a blank: write `{before} {}`", rest.trim_start_matches('.')),
-        ),
+        "." if number && before.ends_with(char::is_alphabetic) && after.starts_with(char::is_alphabetic) => {
+            Some(Way::Write(
+                "separate the factors of a unit by a blank: ",
+                format!("{before} {}", rest.trim_start_matches('.')),
+            ))
+        }
         "(" if number && after.starts_with("per ") => {
-            Some(format!("write `{before} {}`", rest.trim_start_matches('(').trim_end_matches(')')))
+            Some(Way::Write("", format!("{before} {}", rest.trim_start_matches('(').trim_end_matches(')'))))
         }
-        "1" if before.ends_with(digit) && rest == "1/s" => Some(format!("write `{before} Hz`")),
+        "1" if before.ends_with(digit) && rest == "1/s" => Some(Way::Write("", format!("{before} Hz"))),
         "<=" | ">=" | "<" | ">" if before.is_empty() && after.trim_start().starts_with(digit) => {
-            Some(format!("a field has one value: write `{}`", rest.trim_start_matches(['<', '>', '=', ' '])))
+            Some(Way::Write("a field has one value: ", rest.trim_start_matches(['<', '>', '=', ' ']).to_owned()))
         }
         _ => None,
     }

@@ -26,8 +26,11 @@ pub fn useless(text: &str, compiled: &Compiled, again: impl Fn(&str) -> Compiled
     wrong
 }
 
-/// Whether the words of a diagnostic offer a text to be written.
+/// Whether the words of a diagnostic offer a text to be written, and not only its form.
 pub fn offers_a_text(mistake: &Diagnostic) -> bool {
     let help = mistake.help.as_deref().unwrap_or_default();
+    if ["`{ field = value }`", "`[key: value]`"].iter().any(|form| help.contains(form)) {
+        return false;
+    }
     ["write `", "did you mean `"].iter().any(|offer| help.contains(offer)) && !help.contains("...")
 }
