@@ -27,7 +27,7 @@ impl Outlook {
         if blocks.adaptive().is_none() {
             return Outlook::made(track, supports, law, blocks);
         }
-        let input = (track.clone(), supports.to_vec(), law.clone(), blocks.clone());
+        let input = (track.clone(), supports.to_vec(), *law, blocks.clone());
         ADAPTIVE.get(input, |(track, supports, law, blocks)| Outlook::made(track, supports, law, blocks))
     }
 
