@@ -70,6 +70,7 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("bending_stiffness = 6.4 MN m^2", "bending_stiffness = 6.4 kN m^2", Code::E0405, "`6.4 MN m^2` would be in range: is the prefix of the unit right?"),
     ("sleepers.concrete {", "sleepers.B90 {", Code::E0201, "did you mean `sleepers.B70`?"),
     ("mass = 150 kg per seat", "mass = 150 kg per half sleeper", Code::E0101, "`per` takes one word: not `half sleeper`, but for example `seat` or `sleeper`"),
+    ("mass = 150 kg per seat", "mass = 150 m²per seat", Code::E0101, "a blank stands before `per`: write `150 m² per seat`"),
     ("mass = 150 kg per seat", "mass = 150 kg/seat", Code::E0303, "write `kg per seat`"),
     ("stiffness = 50 MN/m per seat,", "stiffness = 50 MN/m,", Code::E0304, "write `50 MN/m per seat`, if that is what you meant"),
     ("stiffness = 50 MN/m per seat,", "stiffness = 50 MN/m per track,", Code::E0304, "write `50 MN/m per seat`, if that is what you meant"),

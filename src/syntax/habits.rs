@@ -13,15 +13,14 @@ impl Builder<'_> {
         let word = found.text(text);
         let (before, after) = (text[start..found.start.max(start)].trim(), &text[found.end..]);
         let rest = part.get(found.start.saturating_sub(start)..).unwrap_or_default();
-        let digit = |c: char| c.is_ascii_digit();
-        if let Some(way) = unit_or_remark(word, before, rest, after) {
+        if let Some(way) = unit_or_remark(word, before, rest, after).or_else(|| blank_before_per(part)) {
             return Some(way);
         }
         let said = |help: String| Some(Way::Say(help));
         let compares = part.contains(['<', '>']) && !part.contains('=');
         if exact == Rule::exact_field && (compares || part.starts_with('[')) {
             return Some(match part.starts_with('[') {
-                true => Way::Write("a list is given to a field: ", format!("that = {part}")),
+                true => Way::Say(format!("a list is given to a field: write `that = {part}`")),
                 false => Way::Write("a comparison is given to `that`: ", format!("that = [{part}]")),
             });
         }
@@ -189,9 +188,19 @@ fn habit_of_field(part: &str) -> Option<Way> {
     letters.then(|| Way::Write(why, format!("{joined} = {}", value.trim())))
 }
 
+/// `150 m²per seat`: the basis is joined to the unit.
+fn blank_before_per(part: &str) -> Option<Way> {
+    let (unit, _) = part.split_once("per ").filter(|(unit, _)| unit.ends_with(['²', '³']) || unit.ends_with(digit))?;
+    let is_value = part.starts_with(digit) || part.starts_with('-');
+    is_value.then(|| Way::Write("a blank stands before `per`: ", format!("{unit} {}", &part[unit.len()..])))
+}
+
+fn digit(c: char) -> bool {
+    c.is_ascii_digit()
+}
+
 /// Help for units in another spelling, and for remarks, that are found at one sign.
 fn unit_or_remark(word: &str, before: &str, rest: &str, after: &str) -> Option<Way> {
-    let digit = |c: char| c.is_ascii_digit();
     let number = before.starts_with(|c: char| c.is_ascii_digit() || c == '-');
     let rest = rest.trim_end();
     match word {

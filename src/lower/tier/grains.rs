@@ -292,5 +292,5 @@ fn pad(seat: &Seat) -> Option<UnderPad> {
     })
 }
 
-/// Least thickness of a pad for its mass, m: with less mass the step of the grains would be shorter.
+/// Least thickness of a pad for its mass, m.
 const THIN: f64 = 0.007;
