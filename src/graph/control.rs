@@ -6,6 +6,7 @@
 //! from the last error.
 
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 
 /// State of the control between two blocks.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -62,18 +63,46 @@ impl Control {
     }
 }
 
+/// Values that `largest_within` asks for before it halves its interval only.
+const QUICK: u32 = 16;
+
 /// The largest count from 1 to `most` for which `value` is at most `bound`; 1 if there is none. `value` must not fall
-/// with the count.
+/// with the count. A settlement grows about as a power of the count, so the search goes along chords between
+/// logarithms (regula falsi, with the weights of the Illinois algorithm, so that both ends move).
 fn largest_within(bound: f64, most: u64, mut value: impl FnMut(u64) -> f64) -> u64 {
-    if most <= 1 || value(most) <= bound {
-        return most.max(1);
+    let beyond_by = |value: f64| (value / bound).ln();
+    if most <= 1 {
+        return 1;
     }
-    let (mut within, mut beyond) = (1, most);
-    while beyond - within > 1 {
-        let middle = within + (beyond - within) / 2;
-        if value(middle) <= bound { within = middle } else { beyond = middle }
+    let last = value(most);
+    if last <= bound {
+        return most;
     }
-    within
+    let first = value(1);
+    if first > bound {
+        return 1;
+    }
+    let (mut within, mut beyond) = ((1, beyond_by(first)), (most, beyond_by(last)));
+    let mut moved = Ordering::Equal;
+    for asked in 0.. {
+        if beyond.0 - within.0 <= 1 {
+            break;
+        }
+        let share = within.1 / (within.1 - beyond.1);
+        let at = if asked < QUICK && (0.0..=1.0).contains(&share) {
+            let guess = within.0 as f64 * (beyond.0 as f64 / within.0 as f64).powf(share);
+            (guess as u64).clamp(within.0 + 1, beyond.0 - 1)
+        } else {
+            within.0 + (beyond.0 - within.0) / 2
+        };
+        let there = value(at);
+        let side = if there <= bound { Ordering::Less } else { Ordering::Greater };
+        let (end, other) = if side.is_lt() { (&mut within, &mut beyond) } else { (&mut beyond, &mut within) };
+        *end = (at, beyond_by(there));
+        other.1 *= if side == moved { 0.5 } else { 1.0 };
+        moved = side;
+    }
+    within.0
 }
 
 #[cfg(test)]
@@ -86,6 +115,21 @@ mod tests {
             for bound in [0.0, 1.0, 3.5, 999.0, 1e9] {
                 let expected = (1..=most).rev().find(|n| *n as f64 <= bound).unwrap_or(1);
                 assert_eq!(largest_within(bound, most, |n| n as f64), expected);
+            }
+        }
+    }
+
+    #[test]
+    fn a_power_of_the_count_is_found_in_few_steps() {
+        for exponent in [0.1, 0.2, 0.5, 1.0] {
+            for expected in [2, 3, 17, 1_000, 123_456, 499_998] {
+                let (mut asked, grown) = (0, |n: u64| 1e-3 + 2e-3 * (n as f64).powf(exponent));
+                let found = largest_within(grown(expected), 500_000, |n| {
+                    asked += 1;
+                    grown(n)
+                });
+                assert_eq!(found, expected);
+                assert!(asked <= 14, "{expected} to the power of {exponent}: {asked} values");
             }
         }
     }

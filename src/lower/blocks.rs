@@ -1,7 +1,7 @@
 //! Divides the axles of a run into blocks, between which forces and settlement are exchanged.
 
 use super::{Draft, Pass, track};
-use crate::diag::{Code, Diagnostic, Span};
+use crate::diag::{Code, Diagnostic, Help, Span};
 use crate::graph::{Blocks, Cost, PassagePlan, Rejected, Schedule, Tamping, Train, Update, Work};
 use crate::scenario::{self, Loading, Order, Scenario, Share, Traffic};
 use crate::schema::Reads;
@@ -255,15 +255,13 @@ fn divides(draft: &mut Draft<'_>, count: u64, train: &scenario::Train, what: &st
     let mut mistake = Diagnostic::new(
         Code::E0602,
         format!("{what} of {count} axles is not a whole number of trains of {axles} axles"),
-    )
-    .help(if count < axles {
-        format!("write `{axles} axles`")
-    } else {
-        format!("write `{below} axles` or `{} axles`", below + axles)
-    });
-    if let Some(span) = span {
-        mistake = mistake.label(span, "not a whole number of trains");
-    }
+    );
+    let whole = if count < axles { vec![axles] } else { vec![below, below + axles] };
+    let help = Help::write_one_of(whole.into_iter().map(|count| format!("{count} axles")).collect());
+    mistake = match span {
+        Some(span) => mistake.label(span, "not a whole number of trains").advise(span, help),
+        None => mistake.help(help.said),
+    };
     draft.diagnostics.push(mistake);
     false
 }

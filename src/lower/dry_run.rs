@@ -75,9 +75,12 @@ impl<'a> DryRun<'a> {
         let left = self.blocks.trains_left(before);
         let mut most = left;
         let here = self.peaks(&self.states);
+        let begun = settlements(&self.states);
         loop {
-            let settled =
-                |trains| largest(&self.states, &self.after(&self.states, &self.blocks.block(before, trains), &here));
+            let settled = |trains| {
+                let states = self.after(&self.states, &self.blocks.block(before, trains), &here);
+                largest(&begun, &settlements(&states))
+            };
             let trains = self.control.choose(most, left, settled);
             let block = self.blocks.block(before, trains);
             let whole = self.after(&self.states, &block, &here);
@@ -90,8 +93,10 @@ impl<'a> DryRun<'a> {
             let halfway = self.after(&self.states, &half, &here);
             let there = self.peaks(&halfway);
             let rest = self.blocks.block(before + half.axles, trains - trains / 2);
-            let error = largest(&whole, &self.after(&halfway, &rest, &there));
-            self.control.learn(error, largest(&self.states, &whole), self.tolerance, self.cap);
+            let by_halves = settlements(&self.after(&halfway, &rest, &there));
+            let at_once = settlements(&whole);
+            let error = largest(&at_once, &by_halves);
+            self.control.learn(error, largest(&begun, &at_once), self.tolerance, self.cap);
             if trains > 2 && error > self.tolerance {
                 most = (trains / 2).max(2);
                 continue;
@@ -151,10 +156,14 @@ impl Stretch {
     }
 }
 
-/// Largest settlement of a seat between two states, m.
-fn largest(from: &States, to: &States) -> f64 {
-    let pairs = from.iter().flatten().zip(to.iter().flatten());
-    pairs.map(|(a, b)| (a.settlement() - b.settlement()).abs()).fold(0.0, f64::max)
+/// Settlement of every seat, m.
+fn settlements(states: &States) -> Vec<f64> {
+    states.iter().flatten().map(SupportState::settlement).collect()
+}
+
+/// Largest difference of two settlements of a seat, m.
+fn largest(from: &[f64], to: &[f64]) -> f64 {
+    from.iter().zip(to).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 /// The first and the last seat of each stretch: both sides of every section boundary beside settling seats, or the

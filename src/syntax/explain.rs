@@ -9,13 +9,15 @@ use super::builder::{Builder, first_line};
 use super::grammar::{Grammar, Rule};
 use super::token::{self, Kind, Token};
 use super::tree::{Name, Path};
-use crate::diag::{Code, Diagnostic, Fix};
+use crate::diag::{Code, Diagnostic, Fix, Help};
 
 /// Help for an unreadable part.
 pub(super) enum Way {
     Say(String),
     /// The reason, and the text to write instead of its first line.
     Write(&'static str, String),
+    /// The help, the bytes of the part that are wrong, and the texts of which one is to be written instead.
+    Offer(String, usize, Vec<String>),
 }
 
 /// The kind of an unreadable part.
@@ -88,6 +90,9 @@ impl<'p> Builder<'p> {
                 let fix = Fix::replace(self.span(start, start + part.len()), written.as_str());
                 mistake.help(format!("{why}write `{written}`")).fix(fix)
             }
+            Some(Way::Offer(said, length, writes)) => {
+                mistake.advise(self.span(start, start + length), Help { said, writes })
+            }
             None => mistake,
         }
     }
@@ -143,7 +148,8 @@ impl<'p> Builder<'p> {
                 if !key.is_empty() && part.chars().all(|c| c.is_ascii_alphabetic() || "_ ".contains(c)) {
                     let words: Vec<&str> = part.split_whitespace().collect();
                     let (name, items) = (words.join("_"), words.join(", "));
-                    return say(&format!("write `{items}` for several, `{name}` for one: a name has no blanks"));
+                    let said = format!("write `{items}` for several, `{name}` for one: a name has no blanks");
+                    return Some(Way::Offer(said, part.len(), vec![items, name]));
                 }
                 let value = rest.starts_with(|c: char| c.is_alphanumeric());
                 let rest = rest.strip_prefix("x ").unwrap_or(rest);

@@ -93,12 +93,17 @@ impl Builder<'_> {
         }
         match word {
             "=" if value && named && before.contains('.') => {
-                said(format!("pairs need brackets: write `[{before}: {}]`", rest.trim_start_matches('=').trim()))
+                let pair = format!("[{before}: {}]", rest.trim_start_matches('=').trim());
+                Some(Way::Write("pairs need brackets: ", pair))
             }
-            "=" if value && named => said(match self.path_before(start) {
-                Some(path) => format!("write `{path}.{before} {rest}`, or `{path} = {{ {before} {rest} }}`"),
-                None => format!("write `{before} {rest}` alone"),
-            }),
+            "=" if value && named => match self.path_before(start) {
+                Some(path) => {
+                    let object = format!("{{ {before} {rest} }}");
+                    let help = format!("write `{path}.{before} {rest}`, or `{path} = {object}`");
+                    Some(Way::Offer(help, part.len(), vec![object]))
+                }
+                None => said(format!("write `{before} {rest}` alone")),
+            },
             ":" if exact == Rule::exact_entry && before.starts_with(digit) && after.starts_with(digit) => {
                 let mut parts = part.split(':');
                 let (from, step, to) = (parts.next()?, parts.next()?, parts.next()?);
@@ -109,10 +114,13 @@ impl Builder<'_> {
             ":" if exact == Rule::exact_entry && before.contains(':') => said("separate pairs by commas".to_owned()),
             ":" if value && !before.is_empty() => {
                 let line = self.items_of_line(start);
-                said(match before.trim_start_matches(['-', '+']).chars().all(|c| c.is_ascii_digit()) {
-                    true => "a span is written `-20 .. -1 sleepers`, several values are written in brackets".to_owned(),
-                    false => format!("pairs need brackets: write `[{line}]`"),
-                })
+                if before.trim_start_matches(['-', '+']).chars().all(|c| c.is_ascii_digit()) {
+                    return said(
+                        "a span is written `-20 .. -1 sleepers`, several values are written in brackets".into(),
+                    );
+                }
+                let list = format!("[{line}]");
+                Some(Way::Offer(format!("pairs need brackets: write `{list}`"), line.len(), vec![list]))
             }
             "'" if before.ends_with(digit) && !after.starts_with(digit) => {
                 let feet: f64 = before.rsplit([' ', '=']).next()?.parse().ok()?;

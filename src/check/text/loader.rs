@@ -7,10 +7,10 @@ use super::modules::{DataError, LARGEST_DATA_FILE, Modules, Parsed};
 use super::overrides::{self, Override};
 use super::scope::{Scope, ScopeId};
 use crate::diag::nearest::nearest;
-use crate::diag::{Code, Diagnostic, Help, Sources, Span};
+use crate::diag::{Code, Diagnostic, Fix, Help, Sources, Span};
 use crate::schema::{self, Role};
 use crate::syntax::decode;
-use crate::syntax::tree::{Declaration, Item, Tree, Use};
+use crate::syntax::tree::{Declaration, Item, Name, Tree, Use};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -246,7 +246,11 @@ impl<'a> Loader<'a> {
                     ),
                 };
                 let mistake = Diagnostic::new(Code::E0204, message).label(used.path.span, "not found");
-                self.diagnostics.push(mistake.maybe_advise(used.path.span, help));
+                // `use std as s` without its other name
+                let without = |alias: &Name| Span { start: used.path.span.end, ..alias.span };
+                let alias = used.alias.as_ref().filter(|_| names.len() == 1);
+                let plain = alias.map(|alias| Fix::replace(without(alias), "").titled("write `use std`"));
+                self.diagnostics.push(mistake.maybe_advise(used.path.span, help).maybe_fix(plain));
                 if names.len() != 2 {
                     brought.broken.extend(library::MODULES.iter().map(|(module, _)| module.to_string()));
                 }

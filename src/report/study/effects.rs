@@ -14,8 +14,11 @@ const HEIGHT: f64 = 246.0;
 const ACROSS: usize = 3;
 /// Pieces into which a value without a list is cut.
 const BINS: usize = 6;
-/// Characters of a level's name below a panel.
-const NAME: usize = 14;
+/// Width of a character below a panel.
+const CHARACTER: f64 = 6.8;
+/// Left and right of the plane of a panel, for the marks of its scale.
+const LEFT: f64 = 58.0;
+const RIGHT: f64 = 8.0;
 
 /// Points that share a value.
 struct Group {
@@ -62,6 +65,12 @@ pub(super) fn main_effects(answer: &Answer) -> Option<(String, String)> {
     if answer.as_it_is().is_some_and(|row| row.values().is_some()) {
         caption += " Dashed: the scene as it is.";
     }
+    for axis in axes {
+        let groups = groups(answer, axis);
+        if lettered(&groups, width) {
+            caption += &key(&answer.study.axes[axis].path, &groups);
+        }
+    }
     if answer.study.repeats > 1 {
         caption += " Whiskers: plus and minus one standard deviation of the repeats. A difference smaller than the \
             whiskers may be chance.";
@@ -81,7 +90,12 @@ fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize,
     let worded = groups.iter().any(|g| !g.label.is_empty());
     let as_it_is = answer.as_it_is().and_then(|row| Some(row.values()?[m] / what.unit.1));
     let plane = Plane {
-        frame: Frame { x: frame.x + 58.0, y: frame.y + 26.0, width: frame.width - 66.0, height: frame.height - 86.0 },
+        frame: Frame {
+            x: frame.x + LEFT,
+            y: frame.y + 26.0,
+            width: frame.width - LEFT - RIGHT,
+            height: frame.height - 86.0,
+        },
         x: if worded { (-0.5, groups.last().map_or(0.5, |g| g.x + 0.5)) } else { range(xs) },
         y: range((0..answer.rows.len()).filter_map(ends).flatten()),
     };
@@ -90,11 +104,10 @@ fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize,
         plane.as_it_is(svg, level, &format!("as it is: {} {}", significant(level, 4), what.unit.0));
     }
     if worded {
-        // names in two rows, so that neighbours leave each other room
-        let most = (NAME * 5 / groups.len().max(5)).max(3);
-        for (index, g) in groups.iter().enumerate() {
-            let row = if groups.len() > 3 { index % 2 } else { 0 };
-            plane.mark(svg, g.x, row, &cut(g.label.trim_matches(['[', ']']), most));
+        let letters = lettered(&groups, frame.width);
+        for (index, group) in groups.iter().enumerate() {
+            let name = if letters { letter(index) } else { bare(&group.label).to_owned() };
+            plane.mark(svg, group.x, index % rows_of(&groups), &name);
         }
     } else {
         plane.level_scale(svg);
@@ -138,6 +151,34 @@ fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize,
             svg.circle("dot s0", place, 4.0, &format!("mean of {count}: {value} {}", what.unit.0));
         }
     });
+}
+
+/// The names of the levels stand in two rows where they are many, so that neighbours leave each other room.
+fn rows_of(groups: &[Group]) -> usize {
+    if groups.len() > 3 { 2 } else { 1 }
+}
+
+/// Whether letters stand for the names of the levels, because these would touch each other below a panel.
+fn lettered(groups: &[Group], width: f64) -> bool {
+    let room = (width - LEFT - RIGHT) * rows_of(groups) as f64 / groups.len() as f64;
+    let wide = |label: &str| (bare(label).chars().count() + 1) as f64 * CHARACTER > room;
+    groups.iter().any(|group| !group.label.is_empty() && wide(&group.label))
+}
+
+/// `A`, `B` and so on; numbers where there are more levels than letters.
+fn letter(index: usize) -> String {
+    ('A'..='Z').nth(index).map_or((index + 1).to_string(), String::from)
+}
+
+/// ` gang.after: A = [100_000] axles, B = ...`
+fn key(path: &str, groups: &[Group]) -> String {
+    let named = |(index, group): (usize, &Group)| format!("{} = `{}`", letter(index), group.label);
+    format!(" {path}: {}.", groups.iter().enumerate().map(named).collect::<Vec<_>>().join(", "))
+}
+
+/// A list without its brackets.
+fn bare(label: &str) -> &str {
+    label.strip_prefix('[').and_then(|inner| inner.strip_suffix(']')).unwrap_or(label)
 }
 
 /// The mean of a measured quantity over the points of a group.

@@ -6,6 +6,9 @@ use crate::report::svg::escape;
 use crate::study::{Answer, PointOutcome, Row};
 use std::fmt::Write;
 
+/// A value with more characters may take several lines, so that the columns behind it stay on the page.
+const LONG: usize = 24;
+
 /// Writes these rows; `whole` adds the status of each row.
 pub(super) fn table(html: &mut String, answer: &Answer, rows: &[usize], whole: bool) {
     let study = &answer.study;
@@ -26,7 +29,9 @@ pub(super) fn table(html: &mut String, answer: &Answer, rows: &[usize], whole: b
         let row = &answer.rows[*index];
         let _ = write!(html, "<tr><td>{}</td>", name(row));
         for level in &row.levels {
-            let _ = write!(html, "<td>{}</td>", escape(&level.number.map_or(level.text.clone(), |n| plain(n, 6))));
+            let text = level.number.map_or(level.text.clone(), |n| plain(n, 6));
+            let class = if text.chars().count() > LONG { " class=\"long\"" } else { "" };
+            let _ = write!(html, "<td{class}>{}</td>", escape(&text));
         }
         (0..measured.len()).for_each(|m| {
             let _ = write!(html, "<td>{}</td>", cell(answer, row, m));

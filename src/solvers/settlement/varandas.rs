@@ -82,6 +82,9 @@ struct PowerSum {
     beta: f64,
     /// H(0), H(1), ...
     table: [f64; SUMMED + 1],
+    /// `x^(1-β)` and the correction at the last of them.
+    power: f64,
+    correction: f64,
 }
 
 const SUMMED: usize = 32;
@@ -92,34 +95,34 @@ impl PowerSum {
         for j in 1..=SUMMED {
             table[j] = table[j - 1] + (j as f64).powf(-beta);
         }
-        Self { beta, table }
+        let from = SUMMED as f64;
+        Self { beta, table, power: from.powf(1.0 - beta), correction: correction(from, beta) }
     }
 
     fn up_to(&self, n: u64) -> f64 {
         if let Some(sum) = usize::try_from(n).ok().and_then(|n| self.table.get(n)) {
             return *sum;
         }
-        let (n, from, beta) = (n as f64, SUMMED as f64, self.beta);
+        let (n, exponent) = (n as f64, 1.0 - self.beta);
         // ∫ x^-β dx, accurate also near β = 1.
-        let (power, ratio) = (1.0 - beta, (n / from).ln());
-        let integral = if power == 0.0 { ratio } else { from.powf(power) * (power * ratio).exp_m1() / power };
-        self.table[SUMMED] + integral + self.correction(n) - self.correction(from)
+        let ratio = (n / SUMMED as f64).ln();
+        let integral = if exponent == 0.0 { ratio } else { self.power * (exponent * ratio).exp_m1() / exponent };
+        self.table[SUMMED] + integral + correction(n, self.beta) - self.correction
     }
+}
 
-    /// `f(x)/2 + Σ B_2k/(2k)! f^(2k-1)(x)` for f = x^-β, to k = 4: the remainder is below 1e-15 from 32 on.
-    fn correction(&self, x: f64) -> f64 {
-        let beta = self.beta;
-        let mut derivative = x.powf(-beta); // of order 0, then 1, 3, 5, 7
-        let mut sum = 0.5 * derivative;
-        derivative *= -beta / x;
-        let coefficients = [1.0 / 12.0, -1.0 / 720.0, 1.0 / 30_240.0, -1.0 / 1_209_600.0];
-        for (k, coefficient) in coefficients.into_iter().enumerate() {
-            sum += coefficient * derivative;
-            let order = 2.0 * k as f64 + 1.0;
-            derivative *= (beta + order) * (beta + order + 1.0) / (x * x);
-        }
-        sum
+/// `f(x)/2 + Σ B_2k/(2k)! f^(2k-1)(x)` for f = x^-β, to k = 4: the remainder is below 1e-15 from 32 on.
+fn correction(x: f64, beta: f64) -> f64 {
+    let mut derivative = x.powf(-beta); // of order 0, then 1, 3, 5, 7
+    let mut sum = 0.5 * derivative;
+    derivative *= -beta / x;
+    let coefficients = [1.0 / 12.0, -1.0 / 720.0, 1.0 / 30_240.0, -1.0 / 1_209_600.0];
+    for (k, coefficient) in coefficients.into_iter().enumerate() {
+        sum += coefficient * derivative;
+        let order = 2.0 * k as f64 + 1.0;
+        derivative *= (beta + order) * (beta + order + 1.0) / (x * x);
     }
+    sum
 }
 
 #[cfg(test)]
