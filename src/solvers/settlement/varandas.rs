@@ -82,7 +82,7 @@ struct PowerSum {
     beta: f64,
     /// H(0), H(1), ...
     table: [f64; SUMMED + 1],
-    /// `x^(1-β)` and the correction at the last of them.
+    /// `x^(1-β)`, and the correction, at `x = SUMMED`.
     power: f64,
     correction: f64,
 }
