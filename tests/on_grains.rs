@@ -55,7 +55,7 @@ struct Heard {
     bonds: Bonds,
     /// Where to stop: after so many blocks, at which of the moments from then on at which a state may be kept.
     stop_after: Option<(usize, u32)>,
-    moments: u32,
+    moments: Vec<u32>,
     kept: Option<Checkpoint>,
 }
 
@@ -74,14 +74,15 @@ impl Listener for Heard {
                 self.settlements.push((*axles, after.to_vec()));
                 self.bonds = measured.bonds;
             }
-            Event::Between(between) => match self.stop_after {
-                Some((blocks, moment)) if blocks == self.settlements.len() && moment == self.moments => {
+            Event::Between(between) => {
+                let blocks = self.settlements.len();
+                self.moments.resize(blocks + 1, 0);
+                if self.stop_after == Some((blocks, self.moments[blocks])) {
                     self.kept = Some(between.checkpoint().unwrap());
                     return ControlFlow::Break(());
                 }
-                Some((blocks, _)) if blocks == self.settlements.len() => self.moments += 1,
-                _ => {}
-            },
+                self.moments[blocks] += 1;
+            }
             _ => {}
         }
         ControlFlow::Continue(())
@@ -132,8 +133,9 @@ fn a_track_on_grains_settles_and_a_run_that_was_stopped_ends_with_the_same_bits(
     let an_axle = first[on_grains[1]] / 4.0;
     assert!(idle < an_axle, "{idle} m in a second, {an_axle} m an axle");
 
-    // the other number of threads, and a stop between the trains, under the first and under the second
-    for stop in [(1, 0), (0, 20), (1, 24)] {
+    // the other number of threads, and a stop between the trains, under the first and on the way to rest after the
+    // second
+    for stop in [(1, 0), (0, 407), (1, whole.moments[1] - 7)] {
         stopped_and_resumed(&graph, folder.path(), stop, &whole);
     }
 }
@@ -164,7 +166,7 @@ fn tables_of_a_run_that_was_stopped(text: &str, beds: &std::path::Path) {
         Directory::open(folder.path(), work, Mode::Resume).unwrap()
     };
     {
-        let (directory, mut stop) = (directory(), Heard { stop_after: Some((0, 5)), ..Heard::default() });
+        let (directory, mut stop) = (directory(), Heard { stop_after: Some((0, 101)), ..Heard::default() });
         let mut recorder = RunRecorder::new(&scenario, &graph).kept_in(&directory);
         executor.run(&graph, &mut Both(&mut recorder, &mut stop), None).unwrap();
         assert!(recorder.tables.blocks.is_empty() && stop.kept.is_some(), "stopped under its first train");
@@ -248,8 +250,8 @@ fn vehicles_ride_on_the_rail_over_the_grains() {
     assert!(graph.is_ridden());
     let mut ridden = Heard::default();
     run(&graph, folder.path(), 2, &mut ridden, None);
-    // in the middle of the second block: its books and what came before it go on. `examples/faults` stops anywhere
-    stopped_and_resumed(&graph, folder.path(), (1, 25), &ridden);
+    // on the way to rest after the last train: its books and what came before it go on. `examples/faults` stops anywhere
+    stopped_and_resumed(&graph, folder.path(), (1, ridden.moments[1] - 47), &ridden);
     tables_of_a_run_that_was_stopped(&text, folder.path());
     let on_grains = carried(&graph);
     let track = graph.track().unwrap();
@@ -476,7 +478,7 @@ fn beds_on_both_sides_of_a_structure_carry_one_rail() {
         ballasted.iter().map(|seat| 9.81 * (track.seats[*seat].foot.mass() + 0.6 * track.rail[0].mass)).sum();
     let carried: f64 = ballasted.iter().map(|seat| forces[*seat]).sum();
     assert!((carried / weight - 1.0).abs() < 0.015, "{carried} of {weight} N");
-    stopped_and_resumed(&graph, folder.path(), (0, 30), &whole);
+    stopped_and_resumed(&graph, folder.path(), (0, 603), &whole);
 }
 
 #[test]

@@ -100,6 +100,17 @@ enum Outcome {
     Usage,
 }
 
+impl Outcome {
+    /// What the shell gets.
+    fn code(&self) -> u8 {
+        match self {
+            Outcome::Fine => 0,
+            Outcome::Failed => 1,
+            Outcome::Usage => 2,
+        }
+    }
+}
+
 /// Whether the command line understands these arguments, without the program's name in front; else what it would say.
 pub fn understands<'a>(arguments: impl IntoIterator<Item = &'a str>) -> Result<(), String> {
     let line = std::iter::once("trackbed").chain(arguments);
@@ -146,9 +157,7 @@ pub fn main() -> ExitCode {
         terminal::error(&format!("standard output is incomplete: {cause}"));
     }
     ExitCode::from(match outcome {
-        Outcome::Fine if lost.is_some() => 1,
-        Outcome::Fine => 0,
-        Outcome::Failed => 1,
-        Outcome::Usage => 2,
+        Outcome::Fine if lost.is_some() => Outcome::Failed.code(),
+        outcome => outcome.code(),
     })
 }

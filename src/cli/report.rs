@@ -4,6 +4,7 @@ use super::{Outcome, terminal};
 use crate::report::{self, BedTestsPage, Figure};
 use crate::results::{self, BedTestsView, NamedBytes, ResultsError, SoFar};
 use crate::store::{Directory, Finished, StoreError, Unfinished};
+use crate::study;
 use std::path::{Path, PathBuf};
 
 /// Write the report page of a run, from its directory
@@ -38,6 +39,17 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
 fn found(directory: &Path, figures: bool) -> Result<String, ResultsError> {
     // a commit that was killed is finished first
     let finished = Finished::open(directory)?;
+    if let Some(study) =
+        finished.as_ref().map(|finished| &finished.manifest().work).filter(|work| work.name.starts_with("study "))
+    {
+        let (page, name) = (directory.join(study::PAGE), &study.name);
+        return Ok(format!(
+            "`{}` holds a finished {name}: its page is `{}`; to write the page again, run `trackbed study` as before with \
+             `--resume`, which runs nothing",
+            directory.display(),
+            page.display()
+        ));
+    }
     match Unfinished::open(directory)? {
         Some(unfinished) => write_so_far(&unfinished, figures),
         None if finished.is_none() => Err(StoreError::Empty { path: directory.to_owned() }.into()),

@@ -1,6 +1,7 @@
 //! `trackbed run`: runs a scene into a directory, with checkpoints, a report and the verdict on its expectations.
 
 use super::cluster::{self, ClusterArguments, Elsewhere, Executor as Place};
+use super::interrupt::Endable;
 use super::memory::MemoryArgument;
 use super::run_elsewhere::{self, ToTheLastAxle};
 use super::run_progress::Shown;
@@ -8,8 +9,8 @@ use super::scene::{PassArguments, SceneArguments, SeedArgument, failed, not_yet,
 use super::task::Packings;
 use super::{Outcome, interrupt, memory, pack, report, stored, terminal};
 use crate::compile::{Compiled, fingerprint};
-use crate::diag::{Code, Diagnostic};
-use crate::execute::{self, Both, Ending, Executor};
+use crate::diag::{Code, Diagnostic, Sources};
+use crate::execute::{self, Both, Ending, Event, Executor, Listener};
 use crate::graph::Graph;
 use crate::lower::Parameter;
 use crate::results::{
@@ -20,7 +21,9 @@ use crate::solvers::granular::Bed;
 use crate::store::{Directory, Finished, Mode, Work};
 use crate::units::number;
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -62,15 +65,19 @@ pub(super) struct Arguments {
     is_worker: bool,
 }
 
+/// Stack of a thread of a run, bytes: that of the main thread of most systems.
+const STACK: usize = 8 << 20;
+
 pub(super) fn run(arguments: &Arguments) -> Outcome {
     if arguments.cluster.are_misused() {
         return Outcome::Usage;
     }
-    let Some(threads) = arguments.threads else { return run_here(arguments) };
-    match rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build() {
+    // from within the pool: a thread outside it would sleep and wake in every step of a small bed
+    let threads = arguments.threads.map_or(0, usize::from);
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build() {
         Ok(pool) => pool.install(|| run_here(arguments)),
         Err(error) => {
-            terminal::error(&format!("cannot start {threads} threads: {error}"));
+            terminal::error(&format!("cannot start threads: {error}"));
             Outcome::Failed
         }
     }
@@ -197,12 +204,14 @@ fn to_the_last_axle(arguments: &Arguments, running: &Running<'_>) -> Result<(), 
         RunRecorder::new(scenario, graph).kept_in(&directory).made_by(source).interrupted_by(end.reached());
     let from = recorder.resume().map_err(|error| stop(compiled, results_diagnostic(&error)))?;
     let executor = Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
-    let ended = executor.run(graph, &mut Both(&mut &end, &mut recorder), from);
+    let (mut recording, endable) = Recording::endable(&mut recorder, directory.path(), true);
+    let ended = executor.run(graph, &mut Both(&mut &end, &mut recording), from);
+    drop(endable);
     match (ended, recorder.failure()) {
         (Err(error), _) => return Err(stop(compiled, execute::diagnose(&error, graph, &compiled.origins))),
         (Ok(_), Some(error)) => return Err(stop(compiled, results_diagnostic(&error))),
         (Ok(_), None) if asked.load(Ordering::Relaxed) => {
-            return Err(stopped(arguments, compiled, directory.path(), recorder.has_kept()));
+            return Err(stopped(directory.path(), true, recorder.has_kept()));
         }
         (Ok(_), None) => {}
     }
@@ -340,12 +349,14 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
     }
     let executor = Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
     let mut shown = Shown::new(graph, from.as_ref());
-    let ended = executor.run(graph, &mut Both(&mut recorder, &mut shown), from);
+    let (mut recording, endable) = Recording::endable(&mut recorder, &out, arguments.is_worker);
+    let ended = executor.run(graph, &mut Both(&mut recording, &mut shown), from);
+    drop(endable);
     drop(shown);
     match (ended, recorder.failure()) {
         (Ok(Ending::Finished), _) => {}
         (Ok(Ending::Stopped), Some(error)) => return Err(refused(&error)),
-        (Ok(Ending::Stopped), None) => return Err(stopped(arguments, compiled, &out, recorder.has_kept())),
+        (Ok(Ending::Stopped), None) => return Err(stopped(&out, arguments.is_worker, recorder.has_kept())),
         (Err(error), _) => return Err(stop(compiled, execute::diagnose(&error, graph, &compiled.origins))),
     }
     let timed = Timed { solve: recorder.seconds(), parts: recorder.parts(), after: Instant::now() };
@@ -360,13 +371,41 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
     Ok(run)
 }
 
+/// A recorder that is not ended from outside while it keeps what it hears.
+struct Recording<'r, 'a> {
+    recorder: &'r mut RunRecorder<'a>,
+    /// Whether there is a state to go on from.
+    has_kept: Arc<AtomicBool>,
+}
+
+impl<'r, 'a> Recording<'r, 'a> {
+    /// The recorder of a run into a directory, which may be ended from outside until the other value is dropped.
+    fn endable(recorder: &'r mut RunRecorder<'a>, out: &Path, is_worker: bool) -> (Recording<'r, 'a>, Endable) {
+        let has_kept = Arc::new(AtomicBool::new(recorder.has_kept()));
+        let (out, kept) = (out.to_owned(), Arc::clone(&has_kept));
+        let words = move || stopped(&out, is_worker, kept.load(Ordering::Relaxed));
+        (Recording { recorder, has_kept }, interrupt::endable(words))
+    }
+}
+
+impl Listener for Recording<'_, '_> {
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        interrupt::writing(|| {
+            let heard = self.recorder.hear(event);
+            self.has_kept.store(self.recorder.has_kept(), Ordering::Relaxed);
+            heard
+        })
+    }
+}
+
 /// Says how to go on with a run that Ctrl-C, SIGTERM or its memory has stopped.
-fn stopped(arguments: &Arguments, compiled: &Compiled, out: &Path, has_kept: bool) -> Outcome {
+fn stopped(out: &Path, is_worker: bool, has_kept: bool) -> Outcome {
     let kept = if has_kept { format!("the state is kept in `{}`", out.display()) } else { NOTHING_KEPT.to_owned() };
     if let Some(outgrown) = memory::outgrown(&kept) {
-        return stop(compiled, outgrown);
+        terminal::diagnostics(&[outgrown], &Sources::default());
+        return Outcome::Failed;
     }
-    let (out, how) = (out.display(), if arguments.is_worker { "again" } else { "with `--resume`" });
+    let (out, how) = (out.display(), if is_worker { "again" } else { "with `--resume`" });
     terminal::note(&match has_kept {
         true => format!(
             "stopped: the state is kept in `{out}`\nto go on, run the same command {how}: the answer will be the same\n"

@@ -11,7 +11,7 @@ use crate::check::{self, Folder, Remembered};
 use crate::cluster::ClusterError;
 use crate::compile::Compiled;
 use crate::diag::nearest::nearest;
-use crate::diag::{Code, Diagnostic, has_errors, or_list};
+use crate::diag::{Code, Diagnostic, Sources, has_errors, or_list};
 use crate::execute;
 use crate::nodes::turns;
 use crate::report;
@@ -194,7 +194,7 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
             say(&[Diagnostic::new(Code::E0802, message).help("go on with `--resume`")], compiled);
             return Outcome::Failed;
         }
-        Err(Unfinished::Asked { kept }) => return stopped(&arguments.out, compiled, kept, plan.points.len()),
+        Err(Unfinished::Asked { kept }) => return stopped(&arguments.out, kept, plan.points.len()),
     };
     let title = compiled.scenario.as_ref().map_or("", |s| s.title.as_str());
     let answer = Answer::new(title, &plan, results);
@@ -206,9 +206,11 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
     let resolved = check::resolve(&name, scene.text, scene.modules, scene.set);
     let seconds = started.elapsed().as_secs_f64();
     let timings = BTreeMap::from([("total_s".to_string(), seconds), ("jobs".to_string(), jobs as f64)]);
-    if (missing > 0 || !folder.is_finished())
-        && let Err(error) = folder.finish(&plan, &answer, (&page, resolved.as_deref()), compiled, &timings)
-    {
+    let written = match (folder.is_finished(), missing) {
+        (true, 0) => folder.show_again(&page),
+        _ => folder.finish(&plan, &answer, (&page, resolved.as_deref()), compiled, &timings),
+    };
+    if let Err(error) = written {
         say(&[stored::diagnostic(&error)], compiled);
         return Outcome::Failed;
     }
@@ -277,10 +279,10 @@ fn known_of(plan: &Plan, folder: &StudyFolder) -> Vec<Option<PointResult>> {
 }
 
 /// Says how to go on with a study that Ctrl-C, SIGTERM or its memory has stopped.
-fn stopped(out: &Path, compiled: &Compiled, kept: usize, all: usize) -> Outcome {
+pub(super) fn stopped(out: &Path, kept: usize, all: usize) -> Outcome {
     let points = format!("{kept} of {all} points are kept in `{}`", out.display());
     if let Some(outgrown) = memory::outgrown(&points) {
-        say(&[outgrown], compiled);
+        terminal::diagnostics(&[outgrown], &Sources::default());
         return Outcome::Failed;
     }
     terminal::note(&format!(

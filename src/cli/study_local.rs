@@ -1,12 +1,13 @@
 //! Runs the points of a study on this machine, several at once.
 
-use super::{interrupt, progress};
+use super::study::stopped;
+use super::{Outcome, interrupt, progress};
 use crate::execute::Executor;
 use crate::nodes::turns;
 use crate::study::{self, Plan, PointResult, Repeat, Scene, StudyFolder};
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Why a study has ended before its last point.
 pub(super) enum Unfinished {
@@ -32,9 +33,12 @@ pub(super) fn perform(
     let kept = |(index, repeat)| Some(((index, repeat), folder.known_run(&plan.points[index], repeat).ok()??));
     let runs: BTreeMap<(usize, u32), Repeat> = all.clone().filter_map(kept).collect();
     let tasks: Vec<(usize, u32)> = all.filter(|run| !runs.contains_key(run)).collect();
-    let work = Mutex::new(Work { plan, known, runs, bar: progress::Patient::seen("the study") });
+    let done = Arc::new(AtomicUsize::new(known.iter().flatten().count()));
+    let bar = progress::Patient::seen("the study");
+    let work = Mutex::new(Work { plan, known, runs, bar, done: Arc::clone(&done) });
     // what cannot be written would be computed for nothing
     let (broken, asked) = (AtomicBool::new(false), interrupt::asked());
+    let _endable = interrupt::endable(last_words(folder, Arc::clone(&done), plan.points.len()));
     let one = |(index, repeat): &(usize, u32)| {
         if broken.load(Ordering::Relaxed) || asked.load(Ordering::Relaxed) {
             return Ok(());
@@ -42,7 +46,8 @@ pub(super) fn perform(
         let overrides = plan.points[*index].overrides_of(*repeat);
         let run = study::perform(scene, &plan.study.name, &overrides, executor, asked);
         let Some(run) = run else { return Ok(()) };
-        let taken = work.lock().unwrap_or_else(PoisonError::into_inner).take(*index, *repeat, run, folder);
+        let take = || work.lock().unwrap_or_else(PoisonError::into_inner).take(*index, *repeat, run, folder);
+        let taken = interrupt::writing(take);
         taken.inspect_err(|_| broken.store(true, Ordering::Relaxed))
     };
     let taken = turns::each(&tasks, jobs, turns::cores(), one)
@@ -54,6 +59,12 @@ pub(super) fn perform(
     if results.len() < plan.points.len() { Err(Unfinished::Asked { kept: results.len() }) } else { Ok(results) }
 }
 
+/// What a study says that is ended from outside.
+fn last_words(folder: &StudyFolder, done: Arc<AtomicUsize>, all: usize) -> impl Fn() -> Outcome + Send + use<> {
+    let out = folder.path().to_owned();
+    move || stopped(&out, done.load(Ordering::Relaxed), all)
+}
+
 /// What there is of a study while it runs.
 struct Work<'a> {
     plan: &'a Plan,
@@ -62,6 +73,8 @@ struct Work<'a> {
     /// By point and repeat, of points that are not finished.
     runs: BTreeMap<(usize, u32), Repeat>,
     bar: progress::Patient,
+    /// Points that are kept.
+    done: Arc<AtomicUsize>,
 }
 
 impl Work<'_> {
@@ -74,6 +87,7 @@ impl Work<'_> {
         if runs.len() == all as usize {
             self.known[index] = Some(PointResult::from_repeats(point, &runs));
             self.runs.retain(|(other, _), _| *other != index);
+            self.done.fetch_add(1, Ordering::Relaxed);
         }
         self.tell();
         Ok(())

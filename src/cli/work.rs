@@ -58,6 +58,7 @@ fn work(arguments: &Arguments) -> Result<(), Outcome> {
     };
     let state = Unfinished::open(path).map_err(|error| of_store(&error))?.ok_or_else(nothing)?;
     let asked = interrupt::asked();
+    let _endable = interrupt::endable(stopped);
     let numbers = match arguments.tasks.as_slice() {
         [] => Task::numbers(&state).map_err(|error| of_store(&error))?,
         some => some.to_vec(),
@@ -69,11 +70,12 @@ fn work(arguments: &Arguments) -> Result<(), Outcome> {
             Task::Packings(packings) => some_packings(&state, &packings, number)?,
         }
     }
-    if asked.load(Ordering::Relaxed) {
-        terminal::note("stopped: finished runs are kept, and the same command computes the rest\n");
-        return Err(Outcome::Failed);
-    }
-    Ok(())
+    if asked.load(Ordering::Relaxed) { Err(stopped()) } else { Ok(()) }
+}
+
+fn stopped() -> Outcome {
+    terminal::note("stopped: finished runs are kept, and the same command computes the rest\n");
+    Outcome::Failed
 }
 
 /// Computes packings of a run, unless somebody else computes them.
@@ -121,7 +123,7 @@ fn one_run(
     let started = Instant::now();
     let Some(done) = study::perform(scene, &task.study, &run.overrides, executor, asked) else { return Ok(true) };
     let bytes = done.bytes().map_err(|cause| of_store(&StoreError::unwritable(study.path(), cause)))?;
-    let is_kept = study.add(&run.key, &bytes).map_err(|error| of_store(&error))?;
+    let is_kept = interrupt::writing(|| study.add(&run.key, &bytes)).map_err(|error| of_store(&error))?;
     terminal::summary(&match is_kept {
         true => format!("{}: {:.1} s\n", run.name, started.elapsed().as_secs_f64()),
         false => "the study has ended: nothing is left to do\n".to_owned(),

@@ -15,6 +15,8 @@ use std::path::Path;
 
 /// Outcomes of a finished study by the fingerprints of their points.
 const POINTS: &str = "points.json";
+/// The page of a study.
+pub const PAGE: &str = "study.html";
 
 /// The directory of a running or finished study.
 #[derive(Debug)]
@@ -43,6 +45,10 @@ impl StudyFolder {
         let constraints = plan.study.constraints.len();
         let (finished, repeats) = (points.map(read).transpose()?, plan.study.repeats);
         Ok(StudyFolder { directory, finished, constraints, repeats })
+    }
+
+    pub fn path(&self) -> &Path {
+        self.directory.path()
     }
 
     /// Whether the study has been finished here before, by this version or by another one.
@@ -113,12 +119,22 @@ impl StudyFolder {
             (POINTS, self.text(POINTS, &outcomes)?),
             ("study.csv", csv.into_bytes()),
             ("study.json", self.text("study.json", &found)?),
-            ("study.html", page.as_bytes().to_vec()),
+            (PAGE, page.as_bytes().to_vec()),
         ];
         files.iter().try_for_each(|(name, bytes)| self.directory.stage(name, bytes))?;
         resolved.map_or(Ok(()), |text| self.directory.stage(RESOLVED, text.as_bytes()))?;
         self.directory.stage_changing("timings.json", &self.text("timings.json", timings)?)?;
         self.directory.commit().map(drop)
+    }
+
+    /// Writes the page of a study that was finished before.
+    pub fn show_again(self, page: &str) -> Result<(), StoreError> {
+        let path = self.directory.path().to_owned();
+        // its lock is for whoever amends it
+        drop(self);
+        let mut directory = Directory::amend(&path)?;
+        directory.stage(PAGE, page.as_bytes())?;
+        directory.commit().map(drop)
     }
 
     fn text(&self, name: &str, value: &impl Serialize) -> Result<Vec<u8>, StoreError> {

@@ -19,7 +19,7 @@ mod runs;
 
 pub use answer::{Answer, Row};
 pub use compared::{Difference, MetAndMissed, amount};
-pub use folder::StudyFolder;
+pub use folder::{PAGE, StudyFolder};
 pub use miss::Miss;
 pub use perform::{PointOutcome, PointResult, Repeat, perform};
 pub use plan::{Plan, plan, plan_told};

@@ -3,7 +3,8 @@
 use super::{Place, coarse_cells, in_one_line, same_results, wait_for};
 use std::fs;
 use std::io::Read;
-use std::process::{Child, Command};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
 
 const SOLVE: &str = "solve { substructure = cells, passages = continuous, update_every = 8 axles, tolerance = 20 % }";
 
@@ -94,4 +95,39 @@ fn a_run_stops_while_its_bed_is_packed() {
     assert!(told.contains("stopped before there was a state to keep"), "{told}");
     let beds = fs::read_dir(place.path("beds")).unwrap().map(|entry| entry.unwrap().path());
     assert!(!beds.into_iter().any(|path| path.extension().is_some_and(|end| end == "bed")), "it has packed to the end");
+}
+
+/// A passage over a long track in very short steps, hours of computing, from which no run can go on.
+fn long_passage() -> String {
+    super::on_a_law(40)
+        .replace("open: 12 m, stiff: 12 m", "open: 600 m, stiff: 600 m")
+        .replace("elements_per_bay = 2, time_step = 2e-4 s", "elements_per_bay = 32, time_step = 1e-6 s")
+}
+
+/// Waits until a command is at work in its directory, asks it to stop, and gives what it said.
+fn stopped_at_work(mut child: Child, out: &Path) -> String {
+    wait_for(&mut child, &out.join(".trackbed"));
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", in_one_line(&output));
+    in_one_line(&output)
+}
+
+/// Whatever it is at: a run that does not stop by itself is ended from outside.
+#[test]
+fn a_run_ends_in_a_passage_of_hours() {
+    let place = Place::new(&long_passage());
+    let told = stopped_at_work(place.start("out", &[]), &place.path("out"));
+    assert!(told.contains("stopped before there was a state to keep"), "{told}");
+}
+
+#[test]
+fn a_study_ends_in_a_passage_of_hours() {
+    let study = "study pads { vary = [stiff.pad.stiffness: [60, 80] MN/m], minimise = max(rail_seat_load) }\n";
+    let place = Place::new(&(long_passage() + study));
+    let [scene, out] = ["scene.track", "out"].map(|name| place.path(name).display().to_string());
+    let mut command = Command::new(env!("CARGO_BIN_EXE_trackbed"));
+    command.args(["study", &scene, "--out", &out]).env("NO_COLOR", "1").stdout(Stdio::piped()).stderr(Stdio::piped());
+    let told = stopped_at_work(command.spawn().unwrap(), &place.path("out"));
+    assert!(told.contains("stopped: 0 of 2 points are kept"), "{told}");
 }

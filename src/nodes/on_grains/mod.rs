@@ -12,6 +12,7 @@ mod idle;
 mod passage;
 mod reading;
 mod recording;
+mod rest;
 mod ride;
 mod soil;
 mod step;
@@ -224,11 +225,12 @@ impl Substructure for GrainGround<'_> {
         for load in loads.iter().skip(done) {
             live.pass(parts, load, follow)?;
         }
+        // the trains are still under way: a run that stops meanwhile has lost none of them
+        if parts.grains.stiffness_from == StiffnessFrom::StaticLoad {
+            live.press(parts, follow)?;
+        }
         let recorded = live.recorded();
         live.underway = None;
-        if parts.grains.stiffness_from == StiffnessFrom::StaticLoad {
-            live.press(parts, &mut |stage, share| follow(Told::Stage(stage, share)))?;
-        }
         self.recorded = recorded;
         self.answer();
         Ok(())

@@ -5,27 +5,15 @@ use super::reading::{Reading, Watched};
 use super::step::{Coupled, HOLD};
 use super::underway::Following;
 use super::wheels::WheelRun;
-use super::{Books, Live, Stage, Telling, going_on};
+use super::{Books, Live, Stage, Telling, Told, going_on};
 use crate::graph::{GrainStretch, SleeperOnGrains, StiffnessFrom};
 use crate::nodes::{Load, NodeError};
-use crate::solvers::granular::measure::unbalance;
-use crate::solvers::granular::{Answer, Fading, Stride};
+use crate::solvers::granular::{Answer, Stride};
 use crate::solvers::track::{Spring, WheelLoads};
 use std::ops::{ControlFlow, Range};
 
-/// Local damping of grains (Cundall), and drag of the rail (1/s), on the way to rest.
-const DAMPING: f64 = 0.7;
-const DRAG: f64 = 200.0;
-/// Steps between looks at rest.
-const LOOK: u64 = 200;
-/// Conditions of rest, at two checks in a row: unbalanced forces are below this share of the acting forces, and no
-/// sleeper is faster than this, m/s.
-const UNBALANCE: f64 = 2e-3;
-const CREEP: f64 = 2e-5;
-const CALM: u32 = 2;
-/// Longest time in which a built track must come to rest, and time to rest after a passage, s.
+/// Longest time in which a built track must come to rest, s.
 const LONGEST: f64 = 2.0;
-pub(super) const AFTER: f64 = 0.25;
 /// Wheels act on the rail from so far before the grains on to so far behind them, m: three times the length in which a
 /// rail's deflection fades.
 pub(super) const REACH: f64 = 6.0;
@@ -73,7 +61,7 @@ impl Coupled {
     }
 
     /// Some of the steps of a run.
-    fn run_steps<A: Answer>(
+    pub(super) fn run_steps<A: Answer>(
         &mut self,
         steps: Range<u64>,
         wheels: &mut impl FnMut(f64, &mut Vec<(f64, f64)>),
@@ -92,47 +80,6 @@ impl Coupled {
         Ok(())
     }
 
-    /// Damps everything while `work` is done.
-    fn damped<T>(&mut self, work: impl FnOnce(&mut Coupled) -> Result<T, NodeError>) -> Result<T, NodeError> {
-        let before: Vec<f64> = self.beds.iter().map(|standing| standing.bed.damping()).collect();
-        self.beds.iter_mut().for_each(|standing| standing.bed.set_damping(DAMPING));
-        self.rail.set_drag(DRAG)?;
-        let done = work(self)?;
-        self.rail.set_drag(0.0)?;
-        self.beds.iter_mut().zip(before).for_each(|(standing, damping)| standing.bed.set_damping(damping));
-        Ok(done)
-    }
-
-    /// Runs until everything is at rest, or the time is over (s). Returns the motion relative to the limit for rest.
-    /// `tell` may end it.
-    pub fn come_to_rest<A: Answer>(&mut self, longest: f64, tell: &mut impl FnMut(f64) -> A) -> Result<f64, NodeError> {
-        self.damped(|coupled| {
-            let (mut calm, mut passed, mut fading) = (0, 0.0, Fading::default());
-            loop {
-                let part = LOOK as f64 * coupled.time_step();
-                coupled.run(part, |_, loads| loads.clear(), |_, _| {})?;
-                passed += part;
-                let away = coupled.restlessness()?;
-                calm = if away <= 1.0 { calm + 1 } else { 0 };
-                going_on(tell(fading.share(away)).flow())?;
-                if calm >= CALM || passed >= longest {
-                    return Ok(away);
-                }
-            }
-        })
-    }
-
-    /// Motion relative to the limit for rest: 1 at the limit.
-    fn restlessness(&mut self) -> Result<f64, NodeError> {
-        let mut most: f64 = 0.0;
-        for standing in &mut self.beds {
-            let snapshot = standing.bed.snapshot()?;
-            most = most.max(unbalance(&standing.bed, &snapshot) / UNBALANCE);
-        }
-        let speed = |foot: usize| self.rail.underside(foot).velocity.abs() / CREEP;
-        Ok((0..self.pushes.len()).map(speed).fold(most, f64::max))
-    }
-
     /// Loads all sleepers at once, and returns the stiffness of each support, N/m.
     fn press(
         &mut self,
@@ -142,13 +89,13 @@ impl Coupled {
         let seats: Vec<f64> = self.rail.carried().iter().map(|seat| parts.track.seats[*seat].x).collect();
         let [growing, standing] = PRESSING;
         let before = self.readings();
-        self.damped(|coupled| {
-            let loads = |time: f64, loads: &mut Vec<(f64, f64)>| {
-                loads.clear();
-                loads.extend(seats.iter().map(|x| (*x, PRESS * (time / growing).min(1.0))));
-            };
-            coupled.run(growing + standing, loads, |time, _| tell(time / (growing + standing)))
-        })?;
+        let damping = self.damp()?;
+        let loads = |time: f64, loads: &mut Vec<(f64, f64)>| {
+            loads.clear();
+            loads.extend(seats.iter().map(|x| (*x, PRESS * (time / growing).min(1.0))));
+        };
+        self.run(growing + standing, loads, |time, _| tell(time / (growing + standing)))?;
+        self.undamp(&damping)?;
         let secant = |(before, now): (&Reading, Reading)| (now.force - before.force) / (now.level - before.level);
         Ok(before.iter().zip(self.readings()).map(secant).collect())
     }
@@ -182,9 +129,13 @@ impl Live {
         Ok(Live { coupled, books, underway: None })
     }
 
-    /// Presses a copy as it is now.
-    pub fn press(&mut self, parts: Parts<'_>, tell: &mut Telling<'_>) -> Result<(), NodeError> {
-        let stiffness = self.coupled.clone().press(parts, &mut |share| tell(Stage::StaticLoad, share))?;
+    /// Presses a copy as it is now. The state that is offered meanwhile is the one before.
+    pub fn press(&mut self, parts: Parts<'_>, follow: &mut Following<'_>) -> Result<(), NodeError> {
+        let mut tell = |share: f64| {
+            let told = [follow(Told::Stage(Stage::StaticLoad, share)), follow(Told::State(&|| self.save()))];
+            told.into_iter().find(ControlFlow::is_break).unwrap_or(ControlFlow::Continue(()))
+        };
+        let stiffness = self.coupled.clone().press(parts, &mut tell)?;
         self.books.stiffness = parts.with_buffers(stiffness);
         self.books.revision += 1;
         self.lay_beyond(parts)
@@ -227,12 +178,12 @@ impl Live {
         let steps = ((end - begin) / time_step).ceil() as u64;
         self.watch();
         let mut step = self.block().step;
+        let with_rest = steps + self.coupled.steps_after();
         while step < steps {
-            self.block().step = step;
-            let next = self.next_steps(step, steps, follow)?;
+            let next = self.next_steps(step, (steps, with_rest), follow)?;
             let time = |step: u64| begin + step as f64 * time_step;
             let mut recording = self.recording(time(step) <= wheels.first_ends());
-            if let Some(recording) = &mut recording {
+            if let Some(recording) = recording.as_mut().filter(|_| step.is_multiple_of(HOLD)) {
                 recording.read_contacts(&mut self.coupled, parts, time(step))?;
                 self.tell_beds(parts, recording, wheels.leading_at(time(step)), follow)?;
             }
@@ -250,9 +201,13 @@ impl Live {
                     now += 1;
                 },
             )?;
+            self.block().step = step;
             self.go_on_recording(recording);
         }
-        self.come_to_rest_after(parts)
+        self.come_to_rest((steps, with_rest), follow)?;
+        self.end_of_passage(parts)?;
+        self.block().step = 0;
+        Ok(())
     }
 
     /// Looks at every carried foot from the beginning of a passage on.
@@ -264,12 +219,9 @@ impl Live {
         }
     }
 
-    /// Ends a passage.
-    pub fn come_to_rest_after(&mut self, parts: Parts<'_>) -> Result<(), NodeError> {
-        self.coupled.come_to_rest(AFTER, &mut |_| {})?;
-        let underway = self.block();
-        underway.step = 0;
-        let watched = std::mem::take(&mut underway.watched);
+    /// Ends a passage after which everything is at rest.
+    pub fn end_of_passage(&mut self, parts: Parts<'_>) -> Result<(), NodeError> {
+        let watched = std::mem::take(&mut self.block().watched);
         self.close_the_books(parts, &watched)
     }
 

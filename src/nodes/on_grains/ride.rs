@@ -3,8 +3,9 @@
 
 use super::build::Parts;
 use super::extremes::{Extremes, Recorded};
-use super::passage::{AFTER, REACH};
+use super::passage::REACH;
 use super::reading::LIFTED;
+use super::step::HOLD;
 use super::underway::{Following, RideUnderway};
 use super::{GrainGround, Live};
 use crate::graph::{Blocks, Record, Runner, Train};
@@ -118,14 +119,6 @@ impl Live {
         }
     }
 
-    /// The springs beyond the grains have settled under a train: the rail goes down, and the load on the grains under
-    /// it changes.
-    fn come_to_rest_on_springs(&mut self) -> Result<(), NodeError> {
-        self.coupled.come_to_rest(AFTER, &mut |_| {})?;
-        self.books.rest = self.coupled.readings();
-        Ok(())
-    }
-
     /// The part of a block under way that is about vehicles that ride.
     fn underway_ride(&mut self) -> Result<&mut RideUnderway, NodeError> {
         self.block().ride.as_mut().ok_or(NodeError::NoTrain)
@@ -139,28 +132,32 @@ impl Live {
         train: &Train,
         follow: &mut Following<'_>,
     ) -> Result<PassageOutcome, NodeError> {
-        let way = self.set_out(parts, riders, train)?;
+        let [start, steps] = self.steps_of_ride(parts, riders, train)?;
+        let rest = self.coupled.steps_after();
+        let all = steps + 2 * rest;
         let (kind, plan) = riders.blocks.kind(riders.runner.kind);
         let time_step = self.coupled.time_step();
-        let (first, ride) = (self.block().step == 0, self.underway_ride()?);
+        let ride = self.underway_ride()?;
         let (since, unloaded) = (ride.since, ride.unloaded.clone());
         let interval = plan.sample_every as f64 * plan.time_step;
         let recorded = riders.records.map(|records| Recorded { records, axles: riders.axles, interval });
         let mut extremes = Extremes::new(parts.track, &unloaded, (kind, plan), recorded, time_step);
-        if !first {
+        if start > 0 {
             extremes.seen = std::mem::take(&mut ride.seen);
         }
-        let steps = (way / train.speed / time_step).ceil() as u64;
-        let mut step = self.block().step;
+        let mut step = start;
         while step < steps {
             self.block().step = step;
             self.underway_ride()?.seen = std::mem::take(&mut extremes.seen);
-            let next = self.next_steps(step, steps, follow)?;
+            let next = self.next_steps(step, (steps, all), follow)?;
             extremes.seen = std::mem::take(&mut self.underway_ride()?.seen);
+            let is_look = step.is_multiple_of(HOLD);
             step = next.end;
             let mut recording = self.recording(true);
-            self.coupled.hold()?;
-            if let Some(recording) = &mut recording {
+            if is_look {
+                self.coupled.hold()?;
+            }
+            if let Some(recording) = recording.as_mut().filter(|_| is_look) {
                 let time = self.coupled.rail.time() - since;
                 recording.read_contacts(&mut self.coupled, parts, time)?;
                 let leading = self.coupled.rail.view().wheel_positions().next();
@@ -179,10 +176,46 @@ impl Live {
             self.go_on_recording(recording);
         }
         self.coupled.rail.dismiss();
-        self.underway_ride()?.on_rail = false;
-        self.come_to_rest_after(parts)?;
-        self.come_to_rest_on_springs()?;
+        self.block().step = steps.max(1);
+        let ride = self.underway_ride()?;
+        ride.on_rail = false;
+        ride.seen = std::mem::take(&mut extremes.seen);
+        self.come_to_rest_on_all(parts, [steps, rest, all], follow)?;
+        extremes.seen = std::mem::take(&mut self.underway_ride()?.seen);
         Ok(extremes.outcome())
+    }
+
+    /// Comes to rest after a ride, or goes on with it: on the grains, and then on the springs beyond them that have
+    /// settled too: the rail goes down, and the load on the grains under it changes.
+    fn come_to_rest_on_all(
+        &mut self,
+        parts: Parts<'_>,
+        [steps, rest, all]: [u64; 3],
+        follow: &mut Following<'_>,
+    ) -> Result<(), NodeError> {
+        if !self.underway_ride()?.has_settled {
+            self.come_to_rest((steps, all), follow)?;
+            self.end_of_passage(parts)?;
+            self.underway_ride()?.has_settled = true;
+        }
+        self.come_to_rest((steps + rest, all), follow)?;
+        self.books.rest = self.coupled.readings();
+        self.underway_ride()?.has_settled = false;
+        self.block().step = 0;
+        Ok(())
+    }
+
+    /// Steps of a ride that are done and of the whole ride, with the train where it is; it has gone from one that comes
+    /// to rest.
+    fn steps_of_ride(&mut self, parts: Parts<'_>, riders: &Riders<'_>, train: &Train) -> Result<[u64; 2], NodeError> {
+        let underway = self.block();
+        let has_gone = underway.resting.is_some();
+        let done = underway.step;
+        if has_gone {
+            return Ok([done, done]);
+        }
+        let way = self.set_out(parts, riders, train)?;
+        Ok([done, (way / train.speed / self.coupled.time_step()).ceil() as u64])
     }
 
     /// Puts a train before the rail, or where it was in the middle of its passage; gives the way that its first wheel

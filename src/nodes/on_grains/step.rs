@@ -13,6 +13,9 @@ use std::time::{Duration, Instant};
 
 /// Steps between updates of inertia: loads form contacts.
 pub const HOLD: u64 = 200;
+/// Steps between reports, after which a run can stop and its state is offered: below 2 s on beds of a million grains. A
+/// divisor of [`HOLD`].
+pub const LISTEN: u64 = 10;
 
 /// A bed with what stands on it and what lies below.
 #[derive(Clone)]

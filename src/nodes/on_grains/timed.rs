@@ -3,7 +3,8 @@
 use super::Live;
 use super::build::Parts;
 use super::energy::PassageEnergy;
-use super::passage::{AFTER, REACH, median};
+use super::passage::{REACH, median};
+use super::rest::AFTER;
 use super::step::{Coupled, HOLD, StandingBed};
 use super::wheels::WheelRun;
 use crate::nodes::{Load, NodeError};

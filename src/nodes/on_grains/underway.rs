@@ -3,7 +3,8 @@
 use super::extremes::Seen;
 use super::reading::Watched;
 use super::recording::Recording;
-use super::step::HOLD;
+use super::rest::Resting;
+use super::step::LISTEN;
 use super::{BedUnderTrack, Books, Live, Stage, tell_stage_and_state};
 use crate::nodes::{NodeError, PassageOutcome, Unloaded};
 use crate::solvers::track::LeapfrogState;
@@ -42,8 +43,10 @@ pub(super) struct Underway {
     /// Runs that are done, and passages of the run under way.
     pub runs: usize,
     pub passages: u64,
-    /// Steps of the passage under way.
+    /// Steps of the passage under way; not 0 until it is at rest after it.
     pub step: u64,
+    /// The way to rest after the passage, once its trains have gone.
+    pub resting: Option<Resting>,
     /// Settlement of every seat before the run under way, m.
     pub before: Vec<f64>,
     /// Each carried foot in the passage under way.
@@ -67,6 +70,8 @@ pub(super) struct RideUnderway {
     pub seen: Seen,
     /// Whether vehicles are on the rail.
     pub on_rail: bool,
+    /// Whether the passage under way has its result, and the springs beyond the grains have settled by it.
+    pub has_settled: bool,
     /// Motion of rail and vehicles, if it was stored in the middle of a passage. The vehicles must exist before the
     /// motion is restored.
     #[serde(skip)]
@@ -77,7 +82,16 @@ impl RideUnderway {
     /// No vehicle has come yet.
     pub fn new(unloaded: Unloaded) -> RideUnderway {
         let (outcomes, first, motion) = (Vec::new(), None, None);
-        RideUnderway { unloaded, outcomes, first, since: 0.0, seen: Seen::default(), on_rail: false, motion }
+        RideUnderway {
+            unloaded,
+            outcomes,
+            first,
+            since: 0.0,
+            seen: Seen::default(),
+            on_rail: false,
+            has_settled: false,
+            motion,
+        }
     }
 }
 
@@ -90,6 +104,7 @@ impl Live {
             runs: 0,
             passages: 0,
             step: 0,
+            resting: None,
             before: books.settlement.clone(),
             watched: Vec::new(),
             ride: None,
@@ -110,10 +125,15 @@ impl Live {
         self.underway.as_ref().map_or(&self.books, |underway| &underway.began)
     }
 
-    /// The next steps of a passage of so many: up to where inertia is looked at. Tells the state before them.
-    pub fn next_steps(&self, from: u64, steps: u64, follow: &mut Following<'_>) -> Result<Range<u64>, NodeError> {
-        let share = from as f64 / steps.max(1) as f64;
+    /// The next steps of a passage of so many, of `all` with those to rest. Tells the state before them.
+    pub fn next_steps(
+        &self,
+        from: u64,
+        (steps, all): (u64, u64),
+        follow: &mut Following<'_>,
+    ) -> Result<Range<u64>, NodeError> {
+        let share = from as f64 / all.max(1) as f64;
         tell_stage_and_state((Stage::Passage, share), &|| self.save(), follow)?;
-        Ok(from..steps.min(from + HOLD))
+        Ok(from..steps.min(from + LISTEN))
     }
 }
