@@ -123,11 +123,11 @@ fn a_run_ends_in_a_passage_of_hours() {
 
 #[test]
 fn a_study_ends_in_a_passage_of_hours() {
-    let study = "study pads { vary = [stiff.pad.stiffness: [60, 80] MN/m], minimise = max(rail_seat_load) }\n";
+    let study = "study two_pads { vary = [stiff.pad.stiffness: [60, 80] MN/m], minimise = max(rail_seat_load) }\n";
     let place = Place::new(&(long_passage() + study));
     let [scene, out] = ["scene.track", "out"].map(|name| place.path(name).display().to_string());
     let mut command = Command::new(env!("CARGO_BIN_EXE_trackbed"));
     command.args(["study", &scene, "--out", &out]).env("NO_COLOR", "1").stdout(Stdio::piped()).stderr(Stdio::piped());
     let told = stopped_at_work(command.spawn().unwrap(), &place.path("out"));
-    assert!(told.contains("stopped: 0 of 2 points are kept"), "{told}");
+    assert!(told.contains("stopped: 0 of 3 points are kept"), "{told}");
 }
