@@ -250,7 +250,8 @@ fn vehicles_ride_on_the_rail_over_the_grains() {
     assert!(graph.is_ridden());
     let mut ridden = Heard::default();
     run(&graph, folder.path(), 2, &mut ridden, None);
-    // on the way to rest after the last train: its books and what came before it go on. `examples/faults` stops anywhere
+    // on the way to rest after the last train: its books and what came before it go on. `examples/faults` stops
+    // anywhere
     stopped_and_resumed(&graph, folder.path(), (1, ridden.moments[1] - 47), &ridden);
     tables_of_a_run_that_was_stopped(&text, folder.path());
     let on_grains = carried(&graph);

@@ -5,13 +5,13 @@ use super::memory::MemoryArgument;
 use super::progress::Patient;
 use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
 use super::study_elsewhere;
-use super::study_local::{Unfinished, perform};
-use super::{Outcome, memory, pack, stored, study_summary, terminal};
+use super::study_local::{Unfinished, perform, stopped};
+use super::{Outcome, interrupt, pack, stored, study_summary, terminal};
 use crate::check::{self, Folder, Remembered};
 use crate::cluster::ClusterError;
 use crate::compile::Compiled;
 use crate::diag::nearest::nearest;
-use crate::diag::{Code, Diagnostic, Sources, has_errors, or_list};
+use crate::diag::{Code, Diagnostic, has_errors, or_list};
 use crate::execute;
 use crate::nodes::turns;
 use crate::report;
@@ -20,7 +20,7 @@ use crate::store::Mode;
 use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Scene, StudyFolder};
 use crate::units::number;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Mutex;
 use std::time::Instant;
 
@@ -161,6 +161,8 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
     if let Err(error) = asked.reach() {
         return refused(&error, compiled);
     }
+    // a signal from here on is heard
+    interrupt::asked();
     let folder = match StudyFolder::open(&arguments.out, &plan, compiled, mode(arguments)) {
         Ok(folder) => folder,
         Err(error) => {
@@ -276,17 +278,4 @@ fn known_of(plan: &Plan, folder: &StudyFolder) -> Vec<Option<PointResult>> {
         folder.known(point).map_err(damaged).ok().flatten()
     };
     plan.points.iter().map(one).collect()
-}
-
-/// Says how to go on with a study that Ctrl-C, SIGTERM or its memory has stopped.
-pub(super) fn stopped(out: &Path, kept: usize, all: usize) -> Outcome {
-    let points = format!("{kept} of {all} points are kept in `{}`", out.display());
-    if let Some(outgrown) = memory::outgrown(&points) {
-        terminal::diagnostics(&[outgrown], &Sources::default());
-        return Outcome::Failed;
-    }
-    terminal::note(&format!(
-        "stopped: {points}\nto go on, run the same command with `--resume`: the answer will be the same\n"
-    ));
-    Outcome::Failed
 }

@@ -1,11 +1,12 @@
 //! Runs the points of a study on this machine, several at once.
 
-use super::study::stopped;
-use super::{Outcome, interrupt, progress};
+use super::{Outcome, interrupt, memory, progress, terminal};
+use crate::diag::Sources;
 use crate::execute::Executor;
 use crate::nodes::turns;
 use crate::study::{self, Plan, PointResult, Repeat, Scene, StudyFolder};
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -63,6 +64,19 @@ pub(super) fn perform(
 fn last_words(folder: &StudyFolder, done: Arc<AtomicUsize>, all: usize) -> impl Fn() -> Outcome + Send + use<> {
     let out = folder.path().to_owned();
     move || stopped(&out, done.load(Ordering::Relaxed), all)
+}
+
+/// Says how to go on with a study that Ctrl-C, SIGTERM or its memory has stopped.
+pub(super) fn stopped(out: &Path, kept: usize, all: usize) -> Outcome {
+    let points = format!("{kept} of {all} points are kept in `{}`", out.display());
+    if let Some(outgrown) = memory::outgrown(&points) {
+        terminal::diagnostics(&[outgrown], &Sources::default());
+        return Outcome::Failed;
+    }
+    terminal::note(&format!(
+        "stopped: {points}\nto go on, run the same command with `--resume`: the answer will be the same\n"
+    ));
+    Outcome::Failed
 }
 
 /// What there is of a study while it runs.

@@ -60,7 +60,11 @@ impl Live {
         let Some([begin, _]) = run.within([left, right]) else { return Err(none()) };
         let Some([first, last]) = run.within([left - REACH, right + REACH]) else { return Err(none()) };
         // the first step makes all lists of a bed that was stored, which a run does once
-        coupled.run(0.5 * coupled.time_step(), |now, loads| run.loads_at(begin + now, begin - 1.0, loads), |_, _| {})?;
+        coupled.run(
+            0.5 * coupled.time_step(),
+            |now, loads| run.loads_at(begin + now, begin - 1.0, loads),
+            |_, _| {},
+        )?;
         let before = coupled.parted();
         let (mut times, mut all) = (Vec::new(), 0);
         for _ in 0..steps.div_ceil(HOLD) {
