@@ -1,8 +1,7 @@
 //! A track on grains comes to rest: damped, until forces are in balance and no sleeper moves.
 
+use super::going_on;
 use super::step::{Coupled, HOLD, LISTEN};
-use super::underway::Following;
-use super::{Live, Stage, going_on, tell_stage_and_state};
 use crate::nodes::NodeError;
 use crate::solvers::granular::measure::unbalance;
 use crate::solvers::granular::{Answer, Fading};
@@ -26,7 +25,7 @@ pub(super) const AFTER: f64 = 0.25;
 pub(super) struct Resting {
     /// Local damping of each bed before.
     damping: Vec<f64>,
-    steps: u64,
+    pub steps: u64,
     /// Motion relative to the limit for rest at the last look: 1 at the limit. `None` before the first one.
     away: Option<f64>,
     /// Looks in a row that found rest.
@@ -60,12 +59,12 @@ impl Coupled {
         Ok(resting.away.unwrap_or_default())
     }
 
-    fn begin_rest(&mut self) -> Result<Resting, NodeError> {
+    pub(super) fn begin_rest(&mut self) -> Result<Resting, NodeError> {
         Ok(Resting { damping: self.damp()?, steps: 0, away: None, calm: 0 })
     }
 
     /// The next steps to rest; returns whether it is over.
-    fn go_to_rest(&mut self, resting: &mut Resting, longest: f64) -> Result<bool, NodeError> {
+    pub(super) fn go_to_rest(&mut self, resting: &mut Resting, longest: f64) -> Result<bool, NodeError> {
         // a rail that was restored on its way has none yet
         self.rail.set_drag(DRAG)?;
         let next = resting.steps..resting.steps + LISTEN;
@@ -103,32 +102,5 @@ impl Coupled {
         }
         let speed = |foot: usize| self.rail.underside(foot).velocity.abs() / CREEP;
         Ok((0..self.pushes.len()).map(speed).fold(most, f64::max))
-    }
-}
-
-impl Live {
-    /// Comes to rest after a passage, or goes on with it. So many steps of the passage are `done`, of `all` with those
-    /// to rest.
-    pub(super) fn come_to_rest(
-        &mut self,
-        (done, all): (u64, u64),
-        follow: &mut Following<'_>,
-    ) -> Result<(), NodeError> {
-        let begun = self.block().resting.take();
-        let begun = begun.map_or_else(|| self.coupled.begin_rest(), Ok)?;
-        let mut steps = begun.steps;
-        self.block().resting = Some(begun);
-        loop {
-            let share = (done + steps) as f64 / all.max(1) as f64;
-            tell_stage_and_state((Stage::Passage, share), &|| self.save(), follow)?;
-            let Live { coupled, underway, .. } = self;
-            let Some(underway) = underway else { return Ok(()) };
-            let Some(resting) = &mut underway.resting else { return Ok(()) };
-            if coupled.go_to_rest(resting, AFTER)? {
-                underway.resting = None;
-                return Ok(());
-            }
-            steps = resting.steps;
-        }
     }
 }

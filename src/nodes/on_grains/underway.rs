@@ -3,7 +3,7 @@
 use super::extremes::Seen;
 use super::reading::Watched;
 use super::recording::Recording;
-use super::rest::Resting;
+use super::rest::{AFTER, Resting};
 use super::step::LISTEN;
 use super::{BedUnderTrack, Books, Live, Stage, tell_stage_and_state};
 use crate::nodes::{NodeError, PassageOutcome, Unloaded};
@@ -135,5 +135,30 @@ impl Live {
         let share = from as f64 / all.max(1) as f64;
         tell_stage_and_state((Stage::Passage, share), &|| self.save(), follow)?;
         Ok(from..steps.min(from + LISTEN))
+    }
+
+    /// Comes to rest after a passage, or goes on with it. So many steps of the passage are `done`, of `all` with those
+    /// to rest.
+    pub(super) fn come_to_rest(
+        &mut self,
+        (done, all): (u64, u64),
+        follow: &mut Following<'_>,
+    ) -> Result<(), NodeError> {
+        let begun = self.block().resting.take();
+        let begun = begun.map_or_else(|| self.coupled.begin_rest(), Ok)?;
+        let mut steps = begun.steps;
+        self.block().resting = Some(begun);
+        loop {
+            let share = (done + steps) as f64 / all.max(1) as f64;
+            tell_stage_and_state((Stage::Passage, share), &|| self.save(), follow)?;
+            let Live { coupled, underway, .. } = self;
+            let Some(underway) = underway else { return Ok(()) };
+            let Some(resting) = &mut underway.resting else { return Ok(()) };
+            if coupled.go_to_rest(resting, AFTER)? {
+                underway.resting = None;
+                return Ok(());
+            }
+            steps = resting.steps;
+        }
     }
 }
