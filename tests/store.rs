@@ -135,7 +135,7 @@ fn a_finished_study_is_resumed_to_its_own_answer_and_checked() {
     assert!(said(&again).contains("finished before") && said(&again).contains("best: point"), "{}", said(&again));
     let told = trackbed(&["report", study.out().to_str().unwrap()]);
     assert_eq!(told.status.code(), Some(0), "{}", said(&told));
-    assert!(said(&told).contains("its page is") && said(&told).contains("study.html"), "{}", said(&told));
+    assert!(said(&told).contains("Its page is") && said(&told).contains("study.html"), "{}", said(&told));
     fails_with(&study.run(&["--resume", "--set", "ore.speed=190 km/h"]), "E0809", "belongs to another scene");
     // a file that is gone or changed is named, whichever it is
     fs::remove_file(study.out().join("design.json")).unwrap();

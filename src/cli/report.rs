@@ -44,8 +44,8 @@ fn found(directory: &Path, figures: bool) -> Result<String, ResultsError> {
     {
         let (page, name) = (directory.join(study::PAGE), &study.name);
         return Ok(format!(
-            "`{}` holds a finished {name}: its page is `{}`; to write the page again, run `trackbed study` as before with \
-             `--resume`, which runs nothing",
+            "`{}` holds a finished {name}. Its page is `{}`.\nTo write the page again, run the same `trackbed study` \
+             command with `--resume`: no point is computed again.",
             directory.display(),
             page.display()
         ));

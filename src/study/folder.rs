@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// Outcomes of a finished study by the fingerprints of their points.
 const POINTS: &str = "points.json";
-/// The page of a study.
+/// File name of the page of a study.
 pub const PAGE: &str = "study.html";
 
 /// The directory of a running or finished study.
@@ -47,6 +47,7 @@ impl StudyFolder {
         Ok(StudyFolder { directory, finished, constraints, repeats })
     }
 
+    /// The directory itself.
     pub fn path(&self) -> &Path {
         self.directory.path()
     }
@@ -127,7 +128,8 @@ impl StudyFolder {
         self.directory.commit().map(drop)
     }
 
-    /// Writes the page of a study that was finished before.
+    /// Writes the page of a study that was finished before. Fails if another process is at work in the directory, or if
+    /// the page cannot be written.
     pub fn show_again(self, page: &str) -> Result<(), StoreError> {
         let path = self.directory.path().to_owned();
         // its lock is for whoever amends it

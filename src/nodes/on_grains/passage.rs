@@ -5,7 +5,7 @@ use super::reading::{Reading, Watched};
 use super::step::{Coupled, HOLD};
 use super::underway::Following;
 use super::wheels::WheelRun;
-use super::{Books, Live, Stage, Telling, Told, going_on};
+use super::{Books, Live, Stage, Telling, going_on, tell_stage_and_state};
 use crate::graph::{GrainStretch, SleeperOnGrains, StiffnessFrom};
 use crate::nodes::{Load, NodeError};
 use crate::solvers::granular::{Answer, Stride};
@@ -131,9 +131,9 @@ impl Live {
 
     /// Presses a copy as it is now. The state that is offered meanwhile is the one before.
     pub fn press(&mut self, parts: Parts<'_>, follow: &mut Following<'_>) -> Result<(), NodeError> {
-        let mut tell = |share: f64| {
-            let told = [follow(Told::Stage(Stage::StaticLoad, share)), follow(Told::State(&|| self.save()))];
-            told.into_iter().find(ControlFlow::is_break).unwrap_or(ControlFlow::Continue(()))
+        let mut tell = |share: f64| match tell_stage_and_state((Stage::StaticLoad, share), &|| self.save(), follow) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
         };
         let stiffness = self.coupled.clone().press(parts, &mut tell)?;
         self.books.stiffness = parts.with_buffers(stiffness);
