@@ -171,6 +171,30 @@ fn very_many_mistakes_are_counted() {
     assert!(said.contains("5500 more errors are not shown"), "{}", &said[said.len() - 400..]);
 }
 
+/// Unknown names among many known ones: the first are told what may have been meant, the others only that they are
+/// unknown, because each comparison takes time.
+#[test]
+fn very_many_unknown_names_are_told_without_a_search_for_each() {
+    let wrong: String = (0..4000).map(|k| format!("rail m{k:04} : r{k:04} {{}}\n")).collect();
+    let (code, said) = check_text(&wrong);
+    assert_eq!(code, Some(1));
+    let told = |k: usize| said.split("\n\nerror").find(|part| part.contains(&format!("called `r{k:04}`"))).unwrap();
+    assert!(told(0).contains("did you mean `m0000`?"), "{}", told(0));
+    assert!(!told(499).contains("did you mean"), "{}", told(499));
+    assert!(said.contains("3500 more errors are not shown"), "{}", &said[said.len() - 400..]);
+}
+
+#[test]
+fn a_module_of_many_names_is_not_listed_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let lets: String = (0..1000).map(|k| format!("let a{k:03} = {k} mm\n")).collect();
+    fs::write(folder.path().join("lengths.track"), lets).unwrap();
+    let text = "use lengths\nrail r { mass = lengths.other }\n";
+    fs::write(folder.path().join("scene.track"), text).unwrap();
+    let (_, said) = told(trackbed(&["check", "scene.track"]).current_dir(folder.path()).output().unwrap());
+    assert!(said.contains("it has a000, a001") && said.contains("and 970 more"), "{said}");
+}
+
 #[test]
 fn lets_count_among_declarations() {
     let lets: String = (0..100_001).map(|k| format!("let a{k} = 1\n")).collect();

@@ -124,4 +124,23 @@ fn packings_on_slurm_are_those_of_this_machine() {
     assert_eq!(code, Some(0), "{told}");
     assert!(told.contains("goes on after 16 axles"), "{told}");
     assert_same_run(&alone, &slurm);
+
+    // whoever watches is killed while a task has the directory of the run: the next one watches the same tasks
+    let again = folder.path().join("again");
+    let arguments = ["run", scene.to_str().unwrap(), "--out", again.to_str().unwrap(), "--executor", "slurm"];
+    let mut watch = Command::new(env!("CARGO_BIN_EXE_trackbed"));
+    let mut watch = watch.args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    wait_for("a checkpoint of the run itself", || again.join(".trackbed/checkpoint").exists());
+    watch.kill().unwrap();
+    watch.wait().unwrap();
+    let jobs = || {
+        let told = Command::new("scontrol").args(["-o", "show", "jobs"]).output().unwrap().stdout;
+        let logs = again.join(".trackbed/logs").display().to_string();
+        String::from_utf8_lossy(&told).lines().filter(|job| job.contains(&logs)).count()
+    };
+    let before = jobs();
+    let (code, told) = run(&again, &["--executor", "slurm", "--resume"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(before > 0 && jobs() == before, "nothing is given twice: {told}");
+    assert_same_run(&alone, &again);
 }

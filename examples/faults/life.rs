@@ -43,6 +43,7 @@ impl<'a> Subject<'a> {
 
     /// Goes on with it to its end.
     pub fn finish(&self) -> Result<(), String> {
+        let mut last = String::new();
         for _ in 0..3 {
             let output = self.start()?.wait_with_output().map_err(|error| error.to_string())?;
             if output.status.success() {
@@ -52,8 +53,9 @@ impl<'a> Subject<'a> {
             if !self.work.on_slurm {
                 return Err(format!("it does not go on: {}", said(&output)));
             }
+            last = said(&output);
         }
-        Err("a cluster does not bring it to its end".to_owned())
+        Err(format!("a cluster does not bring it to its end: {last}"))
     }
 
     /// Lets it go on for so long (s) and kills it; `false` where it has ended before.

@@ -182,6 +182,11 @@ pub(super) fn keep_ledger(state: &Unfinished, ledger: &Ledger) -> Result<(), Sto
     put_json(state, LEDGER, ledger)
 }
 
+/// Whether something has been given to a cluster.
+pub(super) fn has_ledger(state: &Unfinished) -> bool {
+    state.keys().is_ok_and(|keys| keys.contains(LEDGER))
+}
+
 fn ledger(state: &Unfinished) -> Result<Ledger, StoreError> {
     let Some(bytes) = state.kept(LEDGER)? else { return Ok(Ledger::default()) };
     serde_json::from_slice(&bytes).map_err(|cause| StoreError::damaged(state.path(), cause))

@@ -18,7 +18,7 @@ use crate::results::{
 };
 use crate::scenario::Scenario;
 use crate::solvers::granular::Bed;
-use crate::store::{Directory, Finished, Mode, Work};
+use crate::store::{Directory, Finished, Mode, StoreError, Unfinished, Work};
 use crate::units::number;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -114,7 +114,10 @@ fn run_here(arguments: &Arguments) -> Outcome {
             Some(finished) => return again(finished, directory.path(), &compiled),
             None => directory,
         },
-        Err(error) => return stop(&compiled, stored::diagnostic(&error)),
+        Err(error) => match given_to_slurm(arguments, &error, &running) {
+            Some(state) => return watched_again(arguments, &state, &running),
+            None => return stop(&compiled, stored::diagnostic(&error)),
+        },
     };
     let has_further = run_elsewhere::needs(graph, scenario).len() > 1;
     if has_further && let Err(error) = run_elsewhere::begin(&directory) {
@@ -124,8 +127,31 @@ fn run_here(arguments: &Arguments) -> Outcome {
         Place::Local => further_packings(arguments, &running).map(|()| directory),
         Place::Slurm | Place::Workers => computed_elsewhere(arguments, directory, &running),
     };
-    let run = ready.and_then(|directory| compute(arguments, directory, &running));
-    run.map_or_else(|outcome| outcome, |run| verdicts(&run.summary.expectations, scenario, &compiled))
+    finished(arguments, ready, &running)
+}
+
+/// Computes what is left of a run, and gives the verdict on its expectations.
+fn finished(arguments: &Arguments, ready: Result<Directory, Outcome>, running: &Running<'_>) -> Outcome {
+    let run = ready.and_then(|directory| compute(arguments, directory, running));
+    let verdict = |run: Run| verdicts(&run.summary.expectations, running.scenario, running.compiled);
+    run.map_or_else(|outcome| outcome, verdict)
+}
+
+/// The state of a run that Slurm computes, if a task of the run has the directory now. A task has it as long as it
+/// computes the run itself, also while nobody watches.
+fn given_to_slurm(arguments: &Arguments, error: &StoreError, running: &Running<'_>) -> Option<Unfinished> {
+    let is_meant = arguments.resume && arguments.cluster.executor == Place::Slurm;
+    if !is_meant || !matches!(error, StoreError::Busy { .. }) {
+        return None;
+    }
+    let state = Unfinished::open(&arguments.out).ok()??;
+    (*state.work() == running.work(arguments) && cluster::has_ledger(&state)).then_some(state)
+}
+
+/// Watches the tasks of a run whose directory a task has, to the end of the run.
+fn watched_again(arguments: &Arguments, state: &Unfinished, running: &Running<'_>) -> Outcome {
+    let ready = further_works(arguments, running).and_then(|works| watched(arguments, state, running, works));
+    finished(arguments, ready, running)
 }
 
 /// Shows what a cluster would be asked for.
@@ -151,13 +177,24 @@ fn computed_elsewhere(
     let state = directory.shared().clone();
     // the lock is for the process that computes the run itself
     drop(directory);
+    watched(arguments, &state, running, works)
+}
+
+/// Waits until other processes have computed all packings. Gives the directory, to go on from there.
+fn watched(
+    arguments: &Arguments,
+    state: &Unfinished,
+    running: &Running<'_>,
+    works: Vec<(PathBuf, Work)>,
+) -> Result<Directory, Outcome> {
     let of_run = (run_elsewhere::needs(running.graph, running.scenario), works);
-    match run_elsewhere::perform(arguments.packings(), &arguments.asked(), &state, of_run) {
+    match run_elsewhere::perform(arguments.packings(), &arguments.asked(), state, of_run) {
         Ok(None) => {}
         Ok(Some(outcome)) => return Err(outcome),
         Err(error) => return Err(stop(running.compiled, cluster::diagnostic(&error))),
     }
-    Directory::open(&arguments.out, running.work(arguments), Mode::Resume).map_err(of_store)
+    let opened = Directory::open(&arguments.out, running.work(arguments), Mode::Resume);
+    opened.map_err(|error| stop(running.compiled, stored::diagnostic(&error)))
 }
 
 /// What each further packing is, by its directory: results of another scene that lie there are not those of this one.

@@ -185,8 +185,13 @@ impl Curve {
     }
 
     fn covers(&self, x: f64) -> bool {
-        let knots = self.knots();
-        knots.first().is_some_and(|first| *first < x) && knots.last().is_some_and(|last| x < *last)
+        // asked for each interval of a curve, so it must not list all points
+        let ends = match self {
+            Curve::Linear(points) => points.first().zip(points.last()).map(|(a, b)| [a[0], b[0]]),
+            Curve::Level([a, b]) => Some([a[0], b[0]]),
+            Curve::Natural(points) => points.first().zip(points.last()).map(|(a, b)| [a[0], b[0]]),
+        };
+        ends.is_some_and(|[first, last]| first < x && x < last)
     }
 
     fn knots(&self) -> Vec<f64> {

@@ -24,6 +24,10 @@ pub struct Evaluator<'m> {
     pub standard: ScopeId,
     /// Unreadable parts of the text.
     pub(super) unreadable: Vec<Span>,
+    /// Signs of other languages in the text; each has been reported.
+    pub(super) foreign: Vec<Span>,
+    /// Number of names that were compared with unknown names so far, limited by [`COMPARED`].
+    pub(super) compared: usize,
     /// Objects evaluated so far.
     pub(super) records: HashMap<ItemId, Option<Rc<Record>>>,
     /// Values of lets that are numbers.
@@ -50,6 +54,9 @@ pub struct Evaluator<'m> {
 
 /// Largest depth of values inside values: deeper than people write, but safe for any stack.
 const DEEPEST: usize = 1_200;
+/// Largest number of names that are compared with unknown names to find those that were meant. It takes half a second;
+/// thousands of unknown names among thousands of known ones would take minutes.
+pub(super) const COMPARED: usize = 1_000_000;
 /// Depth that is counted for following a name.
 const NAME: usize = 20;
 
@@ -59,6 +66,8 @@ impl<'m> Evaluator<'m> {
         let Loaded { files, scopes, main, standard, diagnostics } = loaded;
         let lost = |d: &&Diagnostic| matches!(d.code, Code::E0101 | Code::E0104 | Code::E0106);
         let unreadable = diagnostics.iter().filter(lost).filter_map(|d| Some(d.labels.first()?.span)).collect();
+        let of_other_languages = diagnostics.iter().filter(|d| d.code == Code::E0105);
+        let foreign = of_other_languages.filter_map(|d| Some(d.labels.first()?.span)).collect();
         Evaluator {
             files,
             findings: Findings::new(diagnostics),
@@ -66,6 +75,8 @@ impl<'m> Evaluator<'m> {
             main,
             standard,
             unreadable,
+            foreign,
+            compared: 0,
             records: HashMap::new(),
             numbers: HashMap::new(),
             defaults: HashMap::new(),

@@ -1,6 +1,6 @@
 //! Looks names up: the meaning of a path in its file.
 
-use super::evaluator::Evaluator;
+use super::evaluator::{COMPARED, Evaluator};
 use super::value::{Slot, Val};
 use crate::check::text::scope::{ItemId, ScopeId};
 use crate::diag::nearest::nearest;
@@ -13,6 +13,16 @@ pub struct Resolved {
     pub id: ItemId,
     pub is_let: bool,
     pub taken: usize,
+}
+
+/// Largest number of names in the help of a diagnostic.
+const LISTED: usize = 30;
+
+/// The first of some names, with the number of the others.
+fn some_of<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
+    let others = names.len().saturating_sub(LISTED);
+    let first = names.take(LISTED).collect::<Vec<_>>().join(", ");
+    if others > 0 { format!("{first} and {others} more") } else { first }
 }
 
 impl Evaluator<'_> {
@@ -43,12 +53,14 @@ impl Evaluator<'_> {
                 );
                 return None;
             };
-            let names: Vec<&str> = self.scopes[module].names.keys().map(String::as_str).collect();
-            let help = match nearest(&second.text, names.iter().copied()) {
+            let may_compare = self.may_compare(self.scopes[module].names.len());
+            let names = self.scopes[module].names.keys().map(String::as_str);
+            let near = may_compare.then(|| nearest(&second.text, names.clone())).flatten();
+            let help = match near {
                 Some(near) => {
                     Help { said: format!("did you mean `{}.{near}`?", first.text), writes: vec![near.to_owned()] }
                 }
-                None => Help::say(format!("it has {}", names.join(", "))),
+                None => Help::say(format!("it has {}", some_of(names))),
             };
             self.findings.report(
                 Diagnostic::new(Code::E0201, format!("module `{}` has no `{}`", first.text, second.text))
@@ -82,11 +94,13 @@ impl Evaluator<'_> {
         if self.unread_word(name) {
             return;
         }
+        let may_compare = self.may_compare(self.scopes[scope].names.len());
         let here = &self.scopes[scope];
         let candidates = here.names.keys().chain(here.modules.keys()).map(String::as_str).chain(words.iter().copied());
         let known = called(Names::Words, &name.text, words.iter().copied());
         let modules = here.modules.clone();
-        let near = known.or_else(|| nearest(&name.text, candidates)).map(|near| match modules.contains_key(near) {
+        let near = known.or_else(|| may_compare.then(|| nearest(&name.text, candidates)).flatten());
+        let near = near.map(|near| match modules.contains_key(near) {
             true => Help { said: format!("did you mean `{near}{behind}`?"), writes: vec![near.to_owned()] },
             false => Help::meant(near),
         });
@@ -122,6 +136,12 @@ impl Evaluator<'_> {
                 .maybe_advise(place, help)
                 .maybe_fix(line.map(|line| Fix::replace(line, "use std\n"))),
         );
+    }
+
+    /// Whether an unknown name is compared with so many known ones, see [`COMPARED`].
+    fn may_compare(&mut self, known: usize) -> bool {
+        self.compared += known;
+        self.compared <= COMPARED
     }
 
     /// The place for a new first line of a file: before its first item and the comments above it.

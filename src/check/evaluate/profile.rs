@@ -45,10 +45,7 @@ impl Evaluator<'_> {
 
     /// Whether a sign of another language has been reported inside a span, with its own help.
     fn misspelt_inside(&self, span: Span) -> bool {
-        let inside = |label: &crate::diag::Label| {
-            label.span.file == span.file && label.span.start >= span.start && label.span.end <= span.end
-        };
-        self.findings.diagnostics.iter().any(|d| d.code == Code::E0105 && d.labels.first().is_some_and(inside))
+        self.foreign.iter().any(|sign| sign.file == span.file && sign.start >= span.start && sign.end <= span.end)
     }
 
     /// Reports a word that is similar to the word of a profile.

@@ -50,11 +50,10 @@ impl Evaluator<'_> {
             return None;
         }
         // `const x = 1`: the sign has been reported, with help
-        let text = &self.files.sources.get(name.span.file).text;
-        let end = text[name.span.end as usize..].find('\n').map_or(text.len(), |i| name.span.end as usize + i);
-        let on_line = |s: Span| s.file == name.span.file && s.start >= name.span.end && s.end as usize <= end;
-        let mut foreign = self.findings.diagnostics.iter().filter(|d| d.code == Code::E0105);
-        if foreign.any(|d| d.labels.first().is_some_and(|label| on_line(label.span))) {
+        let text = self.files.sources.get(name.span.file).text.as_bytes();
+        let between = |s: &Span| text.get(name.span.end as usize..s.end as usize);
+        let on_line = |s: &Span| s.file == name.span.file && between(s).is_some_and(|text| !text.contains(&b'\n'));
+        if self.foreign.iter().any(on_line) {
             return None;
         }
         // a misspelt kind is read as the kind that was probably meant
