@@ -27,7 +27,7 @@ TRACK = (here / "scenarios/transition.track").read_text()
 BOX = (here / "scenarios/box_test.track").read_text()
 
 
-def run(folder, words, seconds=600):
+def run(folder, words):
     """Seconds, MiB at most, exit code and what was said."""
     begun = time.perf_counter()
     child = subprocess.Popen([binary, *words], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
@@ -107,14 +107,14 @@ def growth():
                 for count in times:
                     words = make(folder, count)
                     seconds, _, code, said = run(folder, words)
-                    assert code in (0, 1) and "panick" not in said, said[-600:]
+                    assert code in (0, 1) and "panicked" not in said, said[-600:]
                     times[count].append(seconds)
             small, large = (statistics.median(of) for of in times.values())
             print(f"| {what} | {size:,} | {small:.2f} | {large:.2f} | {(large - empty) / max(small - empty, 1e-3):.1f} |", flush=True)
 
 
 LONG = ["--set", "line.sections=[open: 100 km, stiff: 100 km]", "--set", "solve.elements_per_bay=32", "--set", "solve.time_step=1e-6 s"]
-WIDE = ["--set", "box.sections=[bed: 200000 sleepers]", "--set", "box.bed_width=1000 m per track"]
+WIDE = ["--set", "box.sections=[bed: 50000 sleepers]", "--set", "box.bed_width=20 m per track"]
 
 
 def refusals():
@@ -126,7 +126,7 @@ def refusals():
         (folder / "outside.track").symlink_to("/etc/passwd")
         works = [
             ("200 km of track, 32 elements a bay, 1 us", ["run", here / "scenarios/transition.track", *LONG, "--out", folder / "long"]),
-            ("a test rig of 200,000 sleepers, 1 km wide", ["run", here / "scenarios/box_test.track", *WIDE, "--out", folder / "wide"]),
+            ("a test rig of 50,000 sleepers, 20 m wide", ["run", here / "scenarios/box_test.track", *WIDE, "--out", folder / "wide"]),
         ]
         for module in ("pipe", "device", "outside"):
             scene = folder / f"uses_{module}.track"
@@ -136,7 +136,7 @@ def refusals():
         for what, words in works:
             seconds, mebibytes, code, said = run(folder, words)
             plain = re.sub(r"\x1b\[[0-9;]*m", "", said)
-            first = re.search(r"(E|L)\d{4}", plain)
+            first = re.search(r"E\d{4}", plain)
             size = f", {len(said) / 1e6:.2f} MB of text" if len(said) > 1e5 else ""
             print(f"| {what} | {code} | {seconds:.2f} | {mebibytes:.0f} | {first.group() if first else plain[:60]}{size} |", flush=True)
 

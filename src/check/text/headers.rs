@@ -73,8 +73,11 @@ fn name_behind_colon(
 ) -> Option<(Declaration, Diagnostic)> {
     let kind = schema::kind(&d.kind.text)?;
     let [base] = d.base.as_ref()?.names.as_slice() else { return None };
-    let known = kinds.contains_key(base.text.as_str()) || nearest(&base.text, kinds.keys().copied()).is_some();
-    if d.name.is_some() || d.fields.is_empty() || known || kind.role == (Role::Scene { once: true }) {
+    if d.name.is_some() || d.fields.is_empty() || kind.role == (Role::Scene { once: true }) {
+        return None;
+    }
+    // last, because it compares the base with every name of the file
+    if kinds.contains_key(base.text.as_str()) || nearest(&base.text, kinds.keys().copied()).is_some() {
         return None;
     }
     let mistake = Diagnostic::new(Code::E0201, format!("nothing is called `{}`", base.text))
