@@ -57,7 +57,7 @@ struct SceneSteps {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// Where packed beds are kept, by what made them.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", env = "TRACKBED_CACHE")]
     cache: Option<PathBuf>,
     #[arg(long, value_enum, default_value = "human")]
     format: Format,

@@ -4,7 +4,7 @@ use super::super::{HistoryRow, Scalar, SleeperTable, Tables, broken_bonds, broke
 use super::{BedTest, BedTests};
 use crate::scenario::Track;
 use crate::scenario::response::Response;
-use crate::solvers::granular::rig::Cycle;
+use crate::solvers::granular::rig::{Cycle, SpecimenState};
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
 
@@ -43,7 +43,9 @@ fn scalars(tests: &[BedTest], plate: Option<f64>) -> BTreeMap<String, Scalar> {
     put("peak_strain", "1", &|test| Some(peak(test)?.axial_strain));
     put("secant_modulus", "Pa", &|test| {
         let half = 0.5 * peak(test)?.deviator();
-        let state = test.answer.specimen.iter().find(|state| state.deviator() >= half)?;
+        // a state of no strain has no secant
+        let strained = |state: &&SpecimenState| state.deviator() >= half && state.axial_strain != 0.0;
+        let state = test.answer.specimen.iter().find(strained)?;
         Some(state.deviator() / state.axial_strain)
     });
     put("least_volume_strain", "1", &|test| {
@@ -60,7 +62,9 @@ fn scalars(tests: &[BedTest], plate: Option<f64>) -> BTreeMap<String, Scalar> {
             let samples = || test.answer.samples.iter().filter(|sample| sample.cycle == 1);
             let deepest = samples().max_by(|a, b| a.depth.total_cmp(&b.depth))?;
             let first = samples().next()?;
-            Some(modulus(test, (deepest.force - first.force) / (deepest.depth - first.depth)))
+            let (added, way) = (deepest.force - first.force, deepest.depth - first.depth);
+            // a constant force adds nothing in its cycle
+            (added > 0.0 && way > 0.0).then(|| modulus(test, added / way))
         });
     }
     put("max_contact_force", "N", &|test| test.answer.cycles.iter().map(|cycle| cycle.contact_force).reduce(f64::max));
