@@ -1,6 +1,6 @@
 //! A bed of grains: its parts, and the functions to build it.
 
-use super::body::{Body, BodyId, Clump, SPHERE};
+use super::body::{Arm, Body, BodyId, Clump, SPHERE};
 use super::bonds::Bonds;
 use super::clump::Template;
 use super::contacts::Contacts;
@@ -8,7 +8,8 @@ use super::domain::Domain;
 use super::energy::Ledger;
 use super::failure::Limits;
 use super::gravity::Gravity;
-use super::integrate::{Incidence, Tally, rotate, rotate_back};
+use super::incidence::Incidence;
+use super::integrate::{Tally, rotate, rotate_back};
 use super::lanes::Real;
 use super::law::{ContactLaw, ContactLaws};
 use super::lists::Lists;
@@ -18,7 +19,7 @@ use super::rotation;
 use super::shape::Shape;
 use super::sheet::Sheet;
 use super::timings::Timings;
-use super::vector::{Vec3, add, cross};
+use super::vector::{add, cross};
 use super::walls::{Wall, WallContacts, WallId};
 use super::watch::memory::Watch;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -45,7 +46,7 @@ pub struct Bed<R: Real = f32> {
     /// In the order of the bodies.
     pub(super) clumps: Vec<Clump>,
     /// Positions of the pebbles in the frames of their bodies.
-    pub(super) arms: Vec<Vec3>,
+    pub(super) arms: Vec<Arm>,
     /// Index of each body in the bed, by the order of creation.
     pub(super) index: Vec<u32>,
     pub(super) walls: Vec<Wall>,
@@ -176,7 +177,7 @@ impl<R: Real> Bed<R> {
             attitude: [turned.w, turned.i, turned.j, turned.k],
             turning: [0.0; 3],
             inverse_inertia: template.inertia.map(|i| 1.0 / (density * i)).into(),
-            arms: self.arms.len() as u32,
+            arms: self.arms.len() as u64,
         };
         let matrix = rotation::matrix(&clump.attitude);
         let records: Vec<R::Record> = template
@@ -188,7 +189,7 @@ impl<R: Real> Bed<R> {
                 record
             })
             .collect();
-        self.arms.extend(template.pebbles.iter().map(|p| <[f64; 3]>::from(p.centre)));
+        self.arms.extend(template.pebbles.iter().map(|p| [p.centre.x, p.centre.y, p.centre.z, 0.0]));
         let body = Body { clump: self.clumps.len() as u32, ..self.body(mass, cell, records.len(), surface) };
         self.clumps.push(clump);
         self.put(body, records)
@@ -306,8 +307,8 @@ impl<R: Real> Bed<R> {
         let momentum = [0, 1, 2].map(|c| if held { 0.0 } else { local[c] / clump.inverse_inertia[c] });
         body.spin = rotate(&matrix, momentum);
         clump.turning = spin;
-        for (record, arm) in self.records[range].iter_mut().zip(&self.arms[clump.arms as usize..]) {
-            let velocity = add(velocity, cross(spin, rotate(&matrix, *arm)));
+        for (record, &[x, y, z, _]) in self.records[range].iter_mut().zip(&self.arms[clump.arms as usize..]) {
+            let velocity = add(velocity, cross(spin, rotate(&matrix, [x, y, z])));
             record.move_with(velocity.map(R::from_f64), spin.map(R::from_f64));
         }
     }

@@ -1,13 +1,16 @@
 //! The data of a body besides its pebbles.
 
+use bytemuck::{Pod, Zeroable, must_cast_mut, must_cast_ref};
 use serde::{Deserialize, Serialize};
 
 /// Number of a body in the order of creation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct BodyId(pub u32);
 
-/// The part of the state of a body that its contacts do not read.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+/// The part of the state of a body that its contacts do not read. Its first eight numbers are what a step reads of all
+/// bodies: they are loaded as one row, see [`Body::row`].
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable, Serialize, Deserialize)]
 pub(super) struct Body {
     /// At half steps \[m/s\].
     pub velocity: [f64; 3],
@@ -35,8 +38,27 @@ pub(super) struct Body {
 
 pub(super) const SPHERE: u32 = u32::MAX;
 
+impl Body {
+    /// Velocity, spin, inverse mass and inverse moment of inertia.
+    #[inline(always)]
+    pub fn row(&self) -> &[f64; 8] {
+        let words: &[f64; 13] = must_cast_ref(self);
+        words.first_chunk().expect("thirteen words")
+    }
+
+    #[inline(always)]
+    pub fn row_mut(&mut self) -> &mut [f64; 8] {
+        let words: &mut [f64; 13] = must_cast_mut(self);
+        words.first_chunk_mut().expect("thirteen words")
+    }
+}
+
+/// Position of a pebble in the frame of its body \[m\]; the fourth number is 0, so that it is loaded as one row.
+pub(super) type Arm = [f64; 4];
+
 /// The data of a clump in addition to those of a sphere.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable, Serialize, Deserialize)]
 pub(super) struct Clump {
     /// Offset of the centroid in the cell of the body \[m\].
     pub centre: [f64; 3],
@@ -47,5 +69,32 @@ pub(super) struct Clump {
     /// Inverse principal moments of inertia \[1/(kg m2)\].
     pub inverse_inertia: [f64; 3],
     /// Index of the first pebble position in the body frame.
-    pub arms: u32,
+    pub arms: u64,
+}
+
+/// Words of a clump that are loaded as the second row; three of them are in the first row too.
+const BACK: usize = 5;
+
+impl Clump {
+    /// Centre, attitude, and the first of [`Clump::turning`].
+    #[inline(always)]
+    pub fn front(&self) -> &[f64; 8] {
+        let words: &[f64; 14] = must_cast_ref(self);
+        words.first_chunk().expect("fourteen words")
+    }
+
+    /// The last two of the attitude, turning, inverse moments of inertia.
+    #[inline(always)]
+    pub fn back(&self) -> &[f64; 8] {
+        let words: &[f64; 14] = must_cast_ref(self);
+        words[BACK..].first_chunk().expect("nine words")
+    }
+
+    /// Overwrites both rows; they agree where they overlap.
+    #[inline(always)]
+    pub fn set_rows(&mut self, front: &[f64; 8], back: &[f64; 8]) {
+        let words: &mut [f64; 14] = must_cast_mut(self);
+        words[..8].copy_from_slice(front);
+        words[BACK..BACK + 8].copy_from_slice(back);
+    }
 }

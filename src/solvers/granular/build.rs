@@ -7,9 +7,11 @@ use super::bed::Bed;
 use super::body::{Body, SPHERE};
 use super::contacts::{BlockVector, Contacts};
 use super::domain::{mirrored, steps_of};
+use super::entry::Entry;
 use super::failure::Failure;
 use super::force::Outcome;
-use super::integrate::{Incidence, TASK, Task};
+use super::incidence::Incidence;
+use super::integrate::{TASK, Task};
 use super::lanes::{BLOCK, Real};
 use super::order::Strips;
 use super::record::Record;
@@ -259,7 +261,7 @@ impl<R: Real> Bed<R> {
             if body.clump != SPHERE {
                 let mut clump = self.clumps[body.clump as usize];
                 let own = clump.arms as usize..clump.arms as usize + usize::from(body.pebbles);
-                clump.arms = arms.len() as u32;
+                clump.arms = arms.len() as u64;
                 arms.extend_from_slice(&self.arms[own]);
                 body.clump = clumps.len() as u32;
                 clumps.push(clump);
@@ -372,6 +374,7 @@ impl<R: Real> Bed<R> {
     /// Lists the contacts of each pebble in an order that is the same in all copies of a bay.
     fn connect(&mut self) {
         let (pebbles, contacts) = (self.owner.len(), &self.contacts);
+        assert!(contacts.outcomes.len() < 1 << 30, "contacts are numbered by thirty bits");
         let idle = pebbles as u32;
         let mut start = vec![0u32; pebbles + 1];
         let real = || (0..contacts.len()).filter(|&place| contacts.first[place] != idle);
@@ -384,26 +387,25 @@ impl<R: Real> Bed<R> {
         let bonds = || (0..self.bonds.places()).filter_map(|place| Some((place as u32, self.bonds.pebbles(place)?)));
         bonds().flat_map(|(_, both)| both).for_each(|pebble| count(pebble, 1));
         (0..pebbles).for_each(|p| start[p + 1] += start[p]);
-        let mut entries = vec![0u32; start[pebbles] as usize];
+        let mut entries = vec![Entry::new(0, false); start[pebbles] as usize];
         let mut next = start.clone();
-        let mut put = |pebble: u32, entry: u32| {
+        let mut put = |pebble: u32, entry: Entry| {
             entries[next[pebble as usize] as usize] = entry;
             next[pebble as usize] += 1;
         };
         for place in real() {
-            put(contacts.first[place], 2 * place as u32);
-            put(contacts.second[place], 2 * place as u32 + 1);
+            put(contacts.first[place], Entry::new(place as u32, false));
+            put(contacts.second[place], Entry::new(place as u32, true));
         }
         let walls = contacts.len() as u32;
         for entry in &self.wall_contacts.entries {
-            (entry.slots.0..entry.slots.1).for_each(|slot| put(entry.pebble, 2 * (walls + slot)));
+            (entry.slots.0..entry.slots.1).for_each(|slot| put(entry.pebble, Entry::new(walls + slot, false)));
         }
         let behind = walls + self.wall_contacts.slots.len() as u32;
         for (place, [first, second]) in bonds() {
-            put(first, 2 * (behind + place));
-            put(second, 2 * (behind + place) + 1);
+            put(first, Entry::new(behind + place, false));
+            put(second, Entry::new(behind + place, true));
         }
-        let key = |entry: u32| self.order_of(entry);
         let mut rest = &mut entries[..];
         let mut lists = Vec::with_capacity(pebbles);
         for p in 0..pebbles {
@@ -411,18 +413,23 @@ impl<R: Real> Bed<R> {
             lists.push(list);
             rest = others;
         }
-        lists.into_par_iter().with_min_len(1024).for_each(|list| list.sort_unstable_by_key(|&e| key(e)));
+        lists.into_par_iter().with_min_len(1024).for_each(|list| {
+            list.sort_unstable_by_key(|&entry| self.order_of(entry));
+            if let Some(first) = list.first_mut() {
+                *first = first.at_the_beginning();
+            }
+        });
         self.incidence = Incidence { start, entries };
     }
 
     /// Sort key of a contact among the contacts of its pebble: first the cell of the neighbour relative to the pebble,
     /// then the rank of the neighbour. Walls and bonds come last, in a separate order.
-    fn order_of(&self, entry: u32) -> (u8, u32, u32) {
-        let (place, second) = ((entry >> 1) as usize, entry & 1 == 1);
+    fn order_of(&self, entry: Entry) -> (u8, u32, u32) {
+        let place = entry.place();
         if place >= self.contacts.len() {
             return (u8::MAX, 0, place as u32);
         }
-        let (other, image) = match second {
+        let (other, image) = match entry.is_second() {
             false => (self.contacts.second[place], self.contacts.image[place]),
             true => (self.contacts.first[place], mirrored(self.contacts.image[place])),
         };

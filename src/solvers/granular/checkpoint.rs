@@ -117,7 +117,7 @@ impl<R: Real> Bed<R> {
             bodies: self.bodies.clone(),
             pebbles: self.records[..self.owner.len()].iter().map(pebble).collect(),
             clumps: self.clumps.clone(),
-            arms: self.arms.clone(),
+            arms: self.arms.iter().map(|&[x, y, z, _]| [x, y, z]).collect(),
             walls: self.walls.clone(),
             shear: self.carried(),
             kept: self.kept(),
@@ -155,7 +155,8 @@ impl<R: Real> Bed<R> {
                 record
             })
             .collect();
-        (bed.bodies, bed.clumps, bed.arms, bed.walls) = (from.bodies, from.clumps, from.arms, from.walls);
+        (bed.bodies, bed.clumps, bed.walls) = (from.bodies, from.clumps, from.walls);
+        bed.arms = from.arms.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect();
         (bed.tally, bed.ledger, bed.limits) = (from.tally, from.ledger, from.limits);
         (bed.time, bed.steps, bed.fresh) = (from.time, from.steps, from.fresh);
         (bed.lists.skin, bed.lists.fixed_skin, bed.lists.outdated) = (from.skin, from.fixed_skin, true);

@@ -1,13 +1,12 @@
 //! Cost of steps: reach of the lists, number of lists made, bytes moved per step.
 
 use super::bed::Bed;
-use super::body::{Body, Clump};
+use super::body::{Arm, Body, Clump};
 use super::contacts::BlockVector;
 use super::domain::Image;
 use super::failure::Failure;
 use super::force::Outcome;
 use super::lanes::{BLOCK, Real};
-use super::vector::Vec3;
 use super::walls::{Entry, Slot};
 
 impl<R: Real> Bed<R> {
@@ -52,7 +51,7 @@ impl<R: Real> Bed<R> {
             + bytes(self.incidence.entries.len() + self.incidence.start.len(), size_of::<u32>())
             + bytes(self.bodies.len(), 2 * size_of::<Body>())
             + bytes(self.clumps.len(), 2 * size_of::<Clump>())
-            + bytes(self.arms.len(), size_of::<Vec3>())
+            + bytes(self.arms.len(), size_of::<Arm>())
             + bytes(pebbles, 2 * size_of::<R::Record>());
         contacts + walls + motion
     }

@@ -105,7 +105,7 @@ impl Domain {
             Some(n) => {
                 let period = length * f64::from(n);
                 let raw = a - b;
-                raw - ((f64::from(raw) * length + apart) / period).round() as i32 * n as i32
+                raw - rounds(f64::from(raw) * length + apart, period) * n as i32
             }
         };
         (-1..=1).contains(&steps).then_some(steps)
@@ -136,11 +136,18 @@ impl Domain {
             let mut steps = a.0[axis] - b.0[axis];
             if let Some(n) = self.counts[axis] {
                 let period = length * f64::from(n);
-                steps -= ((f64::from(steps) * length + apart) / period).round() as i32 * n as i32;
+                steps -= rounds(f64::from(steps) * length + apart, period) * n as i32;
             }
             apart + length * f64::from(steps)
         })
     }
+}
+
+/// Number of whole periods nearest to a distance. Most neighbours are less than half a period apart: for them the
+/// division is spared, which took a fifth of the search.
+#[inline(always)]
+fn rounds(distance: f64, period: f64) -> i32 {
+    if 2.0 * distance.abs() < period { 0 } else { (distance / period).round() as i32 }
 }
 
 /// Steps of an image along each axis.

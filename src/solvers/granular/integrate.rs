@@ -1,10 +1,10 @@
 //! The equation of motion of every body: contact forces in a fixed order, damping, leapfrog (methods 4.2, pass 2).
 
-use super::body::{Body, Clump, SPHERE};
+use super::body::{Arm, Body, Clump, SPHERE};
 use super::force::Outcome;
-use super::lanes::{BLOCK, Fine, FineVector, Lanes, Real, Vector, Work};
+use super::incidence::{Felt, Incidence};
+use super::lanes::{BLOCK, Fine, FineVector, Lanes, NOWHERE, Real, Work};
 use super::prefetch::prefetch;
-use super::record::Record;
 use super::rotation;
 use super::vector::{Vec3, dot};
 use rayon::prelude::*;
@@ -20,15 +20,6 @@ pub(super) struct Task {
     pub pebble: u32,
     pub clump: u32,
     pub block: u32,
-}
-
-/// Contacts of each pebble, in an order that depends only on which bodies are its neighbours.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Incidence {
-    /// First entry of each pebble, and one final value.
-    pub start: Vec<u32>,
-    /// Twice the index of a contact, plus one for its second pebble.
-    pub entries: Vec<u32>,
 }
 
 /// Parameters that drive a step.
@@ -79,7 +70,7 @@ pub(super) struct Moving<'a, R: Real> {
     pub bodies: &'a mut [Body],
     pub records: &'a mut [R::Record],
     pub clumps: &'a mut [Clump],
-    pub arms: &'a [Vec3],
+    pub arms: &'a [Arm],
 }
 
 /// Bodies and pebbles of one task.
@@ -121,36 +112,15 @@ pub(super) fn advance<R: Real>(moving: Moving<R>, tasks: &[Task], forces: Forces
     tallies.into_iter().fold(Tally::default(), Tally::and)
 }
 
-/// Number of entries between the prefetched entry and the summed entry.
-const ASKED: usize = 16;
-
-/// Force on a pebble, and moment about its centre: the first six of eight numbers.
-#[inline(always)]
-fn sum<L: Lanes>(lanes: L, pebble: usize, forces: Forces<L::Real>) -> [f64; 8] {
-    let mut sums = [0.0; 8];
-    let Forces { incidence, outcomes } = forces;
-    let range = incidence.start[pebble] as usize..incidence.start[pebble + 1] as usize;
-    for at in range {
-        if let Some(&later) = incidence.entries.get(at + ASKED) {
-            prefetch(&outcomes[(later >> 1) as usize]);
-        }
-        let entry = incidence.entries[at];
-        let outcome = &outcomes[(entry >> 1) as usize];
-        // the force on the second body is opposite; the moments of both have the same sign
-        let second = u64::from(entry & 1);
-        let sign = f64::from_bits(1f64.to_bits() | second << 63);
-        let arm = -outcome[6 + second as usize].to_f64();
-        sums = lanes.add_row(outcome, [sign, sign, sign, arm, arm, arm, arm, arm], sums);
-    }
-    sums
-}
-
 impl<R: Real> Work<R> for Share<'_, R> {
     type Output = Tally;
 
     #[inline(always)]
     fn run<L: Lanes<Real = R>>(mut self, lanes: L) -> Tally {
         let count = self.moving.bodies.len();
+        let first = self.at.pebble as usize;
+        let Forces { incidence, outcomes } = self.forces;
+        let felt = incidence.felt(lanes, first..first + self.moving.records.len(), outcomes);
         let mut told = Told { speeds: vec![0.0; count], spent: Vec::new() };
         if self.drive.watched {
             told.spent = vec![[0.0; SPENT]; count];
@@ -166,23 +136,23 @@ impl<R: Real> Work<R> for Share<'_, R> {
             if kind.clump == SPHERE {
                 spheres.put(Member { body, pebble, pebbles, clump: 0 });
                 if spheres.count == L::WIDTH {
-                    self.spheres(lanes, &spheres, &mut told);
+                    self.spheres(lanes, &spheres, &felt, &mut told);
                     spheres.count = 0;
                 }
             } else {
                 composed.put(Member { body, pebble, pebbles, clump });
                 clump += 1;
                 if composed.count == L::WIDTH {
-                    self.composed(lanes, &composed, &mut told);
+                    self.composed(lanes, &composed, &felt, &mut told);
                     composed.count = 0;
                 }
             }
         }
         if spheres.count > 0 {
-            self.spheres(lanes, &spheres, &mut told);
+            self.spheres(lanes, &spheres, &felt, &mut told);
         }
         if composed.count > 0 {
-            self.composed(lanes, &composed, &mut told);
+            self.composed(lanes, &composed, &felt, &mut told);
         }
         told.sum_up(self.at.body)
     }
@@ -292,41 +262,8 @@ fn column<L: Lanes>(value: Fine<L>) -> [f64; BLOCK] {
     column
 }
 
-/// Three numbers per lane.
-#[inline(always)]
-fn columns<L: Lanes>(value: FineVector<L>) -> [[f64; BLOCK]; 3] {
-    let [x, y, z] = value.0;
-    [column(x), column(y), column(z)]
-}
-
-/// Rows, one per lane, as columns.
-#[derive(Clone, Copy)]
-struct Table<const N: usize>([[f64; BLOCK]; N]);
-
-impl<const N: usize> Table<N> {
-    #[inline(always)]
-    fn new() -> Self {
-        Table([[0.0; BLOCK]; N])
-    }
-
-    #[inline(always)]
-    fn put(&mut self, lane: usize, row: [f64; N]) {
-        let columns = &mut self.0;
-        for c in 0..N {
-            columns[c][lane] = row[c];
-        }
-    }
-
-    #[inline(always)]
-    fn one<L: Lanes>(&self, lanes: L, column: usize) -> Fine<L> {
-        Fine::load(lanes, &self.0[column])
-    }
-
-    #[inline(always)]
-    fn three<L: Lanes>(&self, lanes: L, first: usize) -> FineVector<L> {
-        FineVector::load(lanes, [&self.0[first], &self.0[first + 1], &self.0[first + 2]])
-    }
-}
+/// A row of a lane without a body or a pebble.
+const NONE: &[f64; 8] = &[0.0; 8];
 
 /// Cundall's local damping: each force component is reduced if it drives the motion and increased if it brakes it.
 #[inline(always)]
@@ -382,25 +319,27 @@ fn kick<L: Lanes>(
 }
 
 impl<R: Real> Share<'_, R> {
+    // Rows are loaded from where they stand and transposed in registers: a row of numbers that were just stored one by
+    // one would have to wait for all of them.
     #[inline(always)]
-    fn spheres<L: Lanes<Real = R>>(&mut self, lanes: L, batch: &Batch, told: &mut Told) {
+    fn spheres<L: Lanes<Real = R>>(&mut self, lanes: L, batch: &Batch, felt: &[Felt], told: &mut Told) {
         let Share { moving, drive, .. } = self;
-        // state is kept in values until all is known: reading back values just written costs more than the arithmetic
-        let (mut states, mut sums, mut places) = (Table::<9>::new(), Table::<8>::new(), Table::<3>::new());
+        let (mut states, mut sums, mut masses) = ([NONE; BLOCK], [NONE; BLOCK], [0.0; BLOCK]);
+        // a lane without a body reads that of the first lane
+        let mut index = [batch.members[0].pebble as u32; BLOCK];
         for (l, member) in batch.members().iter().enumerate() {
             let body = &moving.bodies[member.body];
-            let ([u, v, w], [p, q, r]) = (body.velocity, body.spin);
-            states.put(l, [u, v, w, p, q, r, body.inverse_mass, body.inverse_inertia, body.mass]);
-            sums.put(l, sum(lanes, self.at.pebble as usize + member.pebble, self.forces));
-            places.put(l, moving.records[member.pebble].position());
+            (states[l], masses[l]) = (body.row(), body.mass);
+            (sums[l], index[l]) = (&felt[member.pebble].0, member.pebble as u32);
         }
-        let (inverse, per_inertia) = (states.one(lanes, 6), states.one(lanes, 7));
-        let before = (states.three(lanes, 0), inverse, states.one(lanes, 8));
-        let Kick { velocity, spent: [translation, gravity, damping] } = kick(before, sums.three(lanes, 0), drive);
-        let mut acting = sums.three(lanes, 3);
+        let place = FineVector(lanes.gather(moving.records, &index[..L::WIDTH]).position);
+        let [u, v, w, p, q, r, inverse, per_inertia] = lanes.columns(states);
+        let [x, y, z, a, b, c, ..] = lanes.columns(sums);
+        let before = (FineVector([u, v, w]), inverse, Fine::load(lanes, &masses));
+        let Kick { velocity, spent: [translation, gravity, damping] } = kick(before, FineVector([x, y, z]), drive);
+        let (spin, mut acting) = (FineVector([p, q, r]), FineVector([a, b, c]));
         let zero = inverse.alike(0.0);
         let mut lost = FineVector([zero; 3]);
-        let spin = states.three(lanes, 3);
         if drive.damping > 0.0 {
             lost = damp(acting, spin, per_inertia, drive);
             acting = acting + lost;
@@ -415,63 +354,59 @@ impl<R: Real> Share<'_, R> {
             let turning = (lost.dot(mean) * zero.alike(drive.dt)).where_less(zero, per_inertia, none);
             told.spent(batch, inverse, [translation, rotation, gravity, damping, turning]);
         }
-        let place = columns(places.three(lanes, 0) + velocity.scale(zero.alike(drive.dt)));
-        let (narrow, turning) = (velocity.narrow(), spin.narrow());
         told.speeds(batch, velocity.dot(velocity));
-        let (velocity, spin) = (columns(velocity), columns(spin));
-        let motion = Motion::of(narrow, turning);
+        index[batch.count..].fill(NOWHERE);
+        let place = place + velocity.scale(zero.alike(drive.dt));
+        lanes.move_records(moving.records, &index, place, velocity.narrow(), spin.narrow());
+        let ([u, v, w], [p, q, r]) = (velocity.0, spin.0);
+        let rows = lanes.rows([u, v, w, p, q, r, inverse, per_inertia]);
         for (l, member) in batch.members().iter().enumerate() {
-            let record = &mut moving.records[member.pebble];
-            record.place(row(&place, l));
-            motion.give(l, record);
-            let body = &mut moving.bodies[member.body];
-            (body.velocity, body.spin) = (row(&velocity, l), row(&spin, l));
+            *moving.bodies[member.body].row_mut() = rows[l];
         }
     }
 
     #[inline(always)]
-    fn composed<L: Lanes<Real = R>>(&mut self, lanes: L, batch: &Batch, told: &mut Told) {
+    fn composed<L: Lanes<Real = R>>(&mut self, lanes: L, batch: &Batch, felt: &[Felt], told: &mut Told) {
         let Share { moving, drive, .. } = self;
-        let (mut states, mut shapes) = (Table::<8>::new(), Table::<13>::new());
-        let (mut most, mut counts) = (0, [0.0; BLOCK]);
+        let (mut states, mut fronts, mut backs) = ([NONE; BLOCK], [NONE; BLOCK], [NONE; BLOCK]);
+        let (mut most, mut counts, mut masses) = (0, [0.0; BLOCK], [0.0; BLOCK]);
         for (l, member) in batch.members().iter().enumerate() {
             let (body, clump) = (&moving.bodies[member.body], &moving.clumps[member.clump]);
-            let ([u, v, w], [p, q, r]) = (body.velocity, body.spin);
-            states.put(l, [u, v, w, p, q, r, body.inverse_mass, body.mass]);
-            let ([x, y, z], [a, b, c, d], [f, g, h]) = (clump.centre, clump.attitude, clump.turning);
-            let [i, j, k] = clump.inverse_inertia;
-            shapes.put(l, [x, y, z, a, b, c, d, f, g, h, i, j, k]);
+            (states[l], masses[l]) = (body.row(), body.mass);
+            (fronts[l], backs[l]) = (clump.front(), clump.back());
             counts[l] = member.pebbles as f64;
             most = most.max(member.pebbles);
         }
-        let attitude = [shapes.one(lanes, 3), shapes.one(lanes, 4), shapes.one(lanes, 5), shapes.one(lanes, 6)];
+        let [u, v, w, p, q, r, inverse, per_inertia] = lanes.columns(states);
+        let [x, y, z, a, b, c, d, f] = lanes.columns(fronts);
+        let [.., g, h, i, j, k] = lanes.columns(backs);
+        let (attitude, mass) = ([a, b, c, d], Fine::load(lanes, &masses));
         let turned = rotation::matrix_in_lanes(&attitude);
-        let (inverse, mass) = (states.one(lanes, 6), states.one(lanes, 7));
         let zero = mass.alike(0.0);
         let (mut force, mut moment) = (FineVector([zero; 3]), FineVector([zero; 3]));
         for k in 0..most {
             // a lane without such a pebble adds 0
-            let (mut sums, mut arms) = (Table::<8>::new(), Table::<3>::new());
+            let (mut sums, arms) = ([NONE; BLOCK], arms_of(lanes, moving, batch, k));
             for (l, member) in batch.members().iter().enumerate() {
                 if k < member.pebbles {
-                    sums.put(l, sum(lanes, self.at.pebble as usize + member.pebble + k, self.forces));
-                    arms.put(l, moving.arms[moving.clumps[member.clump].arms as usize + k]);
+                    sums[l] = &felt[member.pebble + k].0;
                 }
             }
-            let (push, turn) = (sums.three(lanes, 0), sums.three(lanes, 3));
+            let [x, y, z, a, b, c, ..] = lanes.columns(sums);
+            let (push, turn) = (FineVector([x, y, z]), FineVector([a, b, c]));
             force = force + push;
-            moment = moment + (turn + turned.apply(arms.three(lanes, 0)).cross(push));
+            moment = moment + (turn + turned.apply(arms).cross(push));
         }
-        let before = (states.three(lanes, 0), inverse, mass);
+        let before = (FineVector([u, v, w]), inverse, mass);
         let Kick { velocity, spent: [translation, gravity, damping] } = kick(before, force, drive);
-        let (turning, own) = (shapes.three(lanes, 7), shapes.three(lanes, 10));
+        let (turning, own) = (FineVector([f, g, h]), FineVector([i, j, k]));
         let mut lost = FineVector([zero; 3]);
         if drive.damping > 0.0 {
             // the sign of the spin decides; the acceleration over half a step changes it only a little
             lost = damp(moment, turning, zero, drive);
             moment = moment + lost;
         }
-        let spin = states.three(lanes, 3) + moment.scale(mass.alike(drive.kick));
+        let spin = FineVector([p, q, r]) + moment.scale(mass.alike(drive.kick));
         if drive.watched {
             let local = turned.apply_back(spin - moment.scale(mass.alike(0.5 * drive.dt)));
             let turning = local.times(own);
@@ -479,76 +414,54 @@ impl<R: Real> Share<'_, R> {
             let turned = lost.dot(turned.apply(turning)) * mass.alike(drive.dt);
             told.spent(batch, inverse, [translation, rotation, gravity, damping, turned]);
         }
-        let centre = shapes.three(lanes, 0) + velocity.scale(mass.alike(drive.dt));
+        let centre = FineVector([x, y, z]) + velocity.scale(mass.alike(drive.dt));
         // a clump that keeps its spin rotates like a sphere of unit inertia
-        let free = own.0[0] + own.0[1] + own.0[2];
+        let free = i + j + k;
         let momentum = spin.where_less(zero, free, turning);
-        let own = own.where_less(zero, free, FineVector([mass.alike(1.0); 3]));
-        let (attitude, turning) = rotation::turn_in_lanes(&attitude, &turned, momentum, own, drive.dt);
+        let inertia = own.where_less(zero, free, FineVector([mass.alike(1.0); 3]));
+        let (attitude, turning) = rotation::turn_in_lanes(&attitude, &turned, momentum, inertia, drive.dt);
         let turned = rotation::matrix_in_lanes(&attitude);
         let narrow = turning.narrow();
         let mut fastest = zero;
         let counts = Fine::load(lanes, &counts);
         for k in 0..most {
-            let mut arms = Table::<3>::new();
-            for (l, member) in batch.members().iter().enumerate() {
-                if k < member.pebbles {
-                    arms.put(l, moving.arms[moving.clumps[member.clump].arms as usize + k]);
-                }
-            }
-            let arm = turned.apply(arms.three(lanes, 0));
+            let arm = turned.apply(arms_of(lanes, moving, batch, k));
             let own = velocity + turning.cross(arm);
-            let (place, motion) = (columns(centre + arm), Motion::of(own.narrow(), narrow));
+            let mut index = [NOWHERE; BLOCK];
             for (l, member) in batch.members().iter().enumerate() {
                 if k < member.pebbles {
-                    let record = &mut moving.records[member.pebble + k];
-                    record.place(row(&place, l));
-                    motion.give(l, record);
+                    index[l] = (member.pebble + k) as u32;
                 }
             }
+            lanes.move_records(moving.records, &index, centre + arm, own.narrow(), narrow);
             let speed = own.dot(own).where_less(mass.alike(k as f64), counts, zero);
             fastest = speed.where_less(fastest, speed, fastest);
         }
         // a maximum ignores values that are not numbers
         let of_centre = velocity.dot(velocity);
         told.speeds(batch, fastest + of_centre * zero);
-        let (velocity, spin, centre, turning) = (columns(velocity), columns(spin), columns(centre), columns(turning));
-        let [a, b, c, d] = attitude;
-        let attitude = [column(a), column(b), column(c), column(d)];
+        let ([u, v, w], [p, q, r]) = (velocity.0, spin.0);
+        let ([x, y, z], [a, b, c, d], [f, g, h]) = (centre.0, attitude, turning.0);
+        let states = lanes.rows([u, v, w, p, q, r, inverse, per_inertia]);
+        let (fronts, backs) = (lanes.rows([x, y, z, a, b, c, d, f]), lanes.rows([c, d, f, g, h, i, j, k]));
         for (l, member) in batch.members().iter().enumerate() {
-            let (body, clump) = (&mut moving.bodies[member.body], &mut moving.clumps[member.clump]);
-            (body.velocity, body.spin) = (row(&velocity, l), row(&spin, l));
-            (clump.centre, clump.turning) = (row(&centre, l), row(&turning, l));
-            clump.attitude = [attitude[0][l], attitude[1][l], attitude[2][l], attitude[3][l]];
+            *moving.bodies[member.body].row_mut() = states[l];
+            moving.clumps[member.clump].set_rows(&fronts[l], &backs[l]);
         }
     }
 }
 
-/// A vector of one lane.
+/// Positions of the `k`th pebbles in the frames of their bodies; 0 for a body without such a pebble.
 #[inline(always)]
-fn row<T: Copy>(columns: &[[T; BLOCK]; 3], lane: usize) -> [T; 3] {
-    [columns[0][lane], columns[1][lane], columns[2][lane]]
-}
-
-/// Velocity and spin of pebbles, as their contacts read them.
-struct Motion<R> {
-    velocity: [[R; BLOCK]; 3],
-    spin: [[R; BLOCK]; 3],
-}
-
-impl<R: Real> Motion<R> {
-    #[inline(always)]
-    fn of<L: Lanes<Real = R>>(velocity: Vector<L>, spin: Vector<L>) -> Self {
-        let mut motion = Motion { velocity: [[R::default(); BLOCK]; 3], spin: [[R::default(); BLOCK]; 3] };
-        velocity.store(&mut motion.velocity, 0);
-        spin.store(&mut motion.spin, 0);
-        motion
+fn arms_of<L: Lanes>(lanes: L, moving: &Moving<'_, L::Real>, batch: &Batch, k: usize) -> FineVector<L> {
+    let mut arms = [&[0.0; 4]; BLOCK];
+    for (l, member) in batch.members().iter().enumerate() {
+        if k < member.pebbles {
+            arms[l] = &moving.arms[moving.clumps[member.clump].arms as usize + k];
+        }
     }
-
-    #[inline(always)]
-    fn give(&self, lane: usize, record: &mut R::Record) {
-        record.move_with(row(&self.velocity, lane), row(&self.spin, lane));
-    }
+    let [x, y, z, _] = lanes.short_columns(arms);
+    FineVector([x, y, z])
 }
 
 #[inline(always)]

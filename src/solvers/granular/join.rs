@@ -88,7 +88,7 @@ impl<R: Real> Bed<R> {
         if body.clump != SPHERE {
             let mut clump = from.clumps[body.clump as usize];
             let arms = clump.arms as usize..clump.arms as usize + usize::from(body.pebbles);
-            clump.arms = self.arms.len() as u32;
+            clump.arms = self.arms.len() as u64;
             self.arms.extend_from_slice(&from.arms[arms]);
             body.clump = self.clumps.len() as u32;
             self.clumps.push(clump);

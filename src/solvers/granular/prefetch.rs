@@ -7,13 +7,19 @@
 /// until the data arrive.
 #[inline(always)]
 pub(super) fn prefetch<T>(what: &T) {
+    prefetch_at(std::slice::from_ref(what), 0);
+}
+
+/// Prefetches the cache line at the start of `list[index]`; of an index beyond the list any line, or none.
+#[inline(always)]
+pub(super) fn prefetch_at<T>(list: &[T], index: usize) {
     #[cfg(target_arch = "x86_64")]
-    // SAFETY: a prefetch has no observable effect and never faults; it belongs to SSE, which every x86_64 has; and the
-    // address is the address of a live reference.
+    // SAFETY: a prefetch has no observable effect and never faults, whatever the address; and it belongs to SSE, which
+    // every x86_64 has.
     unsafe {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(what).cast());
+        _mm_prefetch::<_MM_HINT_T0>(list.as_ptr().wrapping_add(index).cast());
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = what;
+    let _ = (list, index);
 }

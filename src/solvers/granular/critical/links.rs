@@ -147,9 +147,8 @@ impl<R: Real> Bed<R> {
         let mut bonds: Vec<usize> = Vec::new();
         let Body { first, pebbles, .. } = self.bodies[body as usize];
         for pebble in first as usize..first as usize + usize::from(pebbles) {
-            let range = self.incidence.start[pebble] as usize..self.incidence.start[pebble + 1] as usize;
-            for entry in &self.incidence.entries[range] {
-                let place = (entry >> 1) as usize;
+            for entry in self.incidence.contacts_of(pebble) {
+                let place = entry.place();
                 if let Some(slot) = place.checked_sub(self.contacts.len()) {
                     match slot.checked_sub(self.wall_contacts.slots.len()) {
                         Some(bond) => bonds.push(bond),
@@ -161,7 +160,7 @@ impl<R: Real> Bed<R> {
                     continue;
                 }
                 // a body that touches its own image owns both ends of the contact
-                let again = entry & 1 == 1 && self.owner[self.contacts.first[place] as usize] == body;
+                let again = entry.is_second() && self.owner[self.contacts.first[place] as usize] == body;
                 if let Some(link) = self.pair(place, 0.0).filter(|_| !again) {
                     pairs.push((self.name_of_pair(place), link));
                 }
@@ -184,9 +183,8 @@ impl<R: Real> Bed<R> {
         let mut links = Vec::new();
         let body = &self.bodies[body as usize];
         for pebble in body.first as usize..body.first as usize + usize::from(body.pebbles) {
-            let range = self.incidence.start[pebble] as usize..self.incidence.start[pebble + 1] as usize;
             let mut last = None;
-            for place in self.incidence.entries[range].iter().map(|entry| (entry >> 1) as usize) {
+            for place in self.incidence.contacts_of(pebble).iter().map(|entry| entry.place()) {
                 let Some(slot) = place.checked_sub(self.contacts.len()) else {
                     links.extend(self.pair(place, gap));
                     continue;

@@ -162,7 +162,8 @@ impl<R: Real> Bed<R> {
             return (body.inverse_mass, body.inverse_mass + radius * radius * body.inverse_inertia);
         }
         let clump = &self.clumps[body.clump as usize];
-        let arm = radius + super::vector::norm(self.arms[(clump.arms + pebble - body.first) as usize]);
+        let [x, y, z, _] = self.arms[clump.arms as usize + (pebble - body.first) as usize];
+        let arm = radius + super::vector::norm([x, y, z]);
         let most = body.inverse_mass + arm * arm * clump.inverse_inertia.into_iter().fold(0.0, f64::max);
         (most, most)
     }

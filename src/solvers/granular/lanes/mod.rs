@@ -15,7 +15,10 @@ mod x86;
 
 pub use fine::{FineVector, Matrix};
 pub use plain::Plain;
+#[cfg(test)]
+pub use plain::factors;
 
+use super::entry::Entry;
 use super::record::Record;
 use bytemuck::Pod;
 use serde::{Serialize, de::DeserializeOwned};
@@ -23,6 +26,9 @@ use std::ops::{Add, Div, Index, Mul, Neg, Sub};
 
 /// Contacts that are stored together; a multiple of every width.
 pub const BLOCK: usize = 16;
+
+/// Index of a lane that has no record.
+pub const NOWHERE: u32 = u32::MAX;
 
 /// A precision for forces, velocities and contact histories. Positions and sums are always `f64`.
 pub trait Real:
@@ -128,8 +134,24 @@ pub trait Lanes: Copy {
 
     /// The records at `index`, transposed.
     fn gather(self, records: &[<Self::Real as Real>::Record], index: &[u32]) -> Columns<Self>;
-    /// `factors row + sums` for the eight numbers of one row.
-    fn add_row(self, row: &Row<Self::Real>, factors: [f64; 8], sums: [f64; 8]) -> [f64; 8];
+    /// Moves the records at `index`; lanes at [`NOWHERE`] are left out.
+    fn move_records(
+        self,
+        records: &mut [<Self::Real as Real>::Record],
+        index: &[u32; BLOCK],
+        position: FineVector<Self>,
+        velocity: Vector<Self>,
+        spin: Vector<Self>,
+    );
+    /// Rows of eight numbers, one per lane, transposed.
+    fn columns(self, rows: [&[f64; 8]; BLOCK]) -> [Fine<Self>; 8];
+    /// Rows of four numbers, one per lane, transposed.
+    fn short_columns(self, rows: [&[f64; 4]; BLOCK]) -> [Fine<Self>; 4];
+    /// Eight columns, transposed to a row per lane.
+    fn rows(self, columns: [Fine<Self>; 8]) -> [[f64; 8]; BLOCK];
+    /// `factors row + sums` for the eight numbers of an outcome, see `factors` in `plain.rs`; the sums
+    /// begin at 0 where the entry begins.
+    fn add_row(self, row: &Row<Self::Real>, entry: Entry, sums: [f64; 8]) -> [f64; 8];
     /// Eight numbers per lane, written lane by lane.
     fn scatter(self, columns: [Num<Self>; 8], to: &mut [Row<Self::Real>]);
 }

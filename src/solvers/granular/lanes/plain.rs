@@ -1,6 +1,7 @@
 //! Lanes as plain arrays: the reference for all other kinds, used on machines without wide instructions.
 
-use super::{Columns, Fine, Lanes, Num, Real, Row, Vector};
+use super::{BLOCK, Columns, Fine, FineVector, Lanes, Num, Real, Row, Vector};
+use crate::solvers::granular::entry::Entry;
 use crate::solvers::granular::record::Record;
 use std::marker::PhantomData;
 
@@ -242,7 +243,58 @@ impl<R: Real, const W: usize> Lanes for Plain<R, W> {
     }
 
     #[inline(always)]
-    fn add_row(self, row: &Row<R>, factors: [f64; 8], mut sums: [f64; 8]) -> [f64; 8] {
+    fn move_records(
+        self,
+        records: &mut [R::Record],
+        index: &[u32; BLOCK],
+        position: FineVector<Self>,
+        velocity: Vector<Self>,
+        spin: Vector<Self>,
+    ) {
+        for l in 0..W {
+            if let Some(record) = records.get_mut(index[l] as usize) {
+                record.place([0, 1, 2].map(|c| position.0[c].value[l]));
+                record.move_with([0, 1, 2].map(|c| velocity.0[c].value[l]), [0, 1, 2].map(|c| spin.0[c].value[l]));
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn columns(self, rows: [&[f64; 8]; BLOCK]) -> [Fine<Self>; 8] {
+        let mut columns = [[0.0; W]; 8];
+        for l in 0..W {
+            for c in 0..8 {
+                columns[c][l] = rows[l][c];
+            }
+        }
+        columns.map(|value| fine(self, value))
+    }
+
+    #[inline(always)]
+    fn short_columns(self, rows: [&[f64; 4]; BLOCK]) -> [Fine<Self>; 4] {
+        let mut columns = [[0.0; W]; 4];
+        for l in 0..W {
+            for c in 0..4 {
+                columns[c][l] = rows[l][c];
+            }
+        }
+        columns.map(|value| fine(self, value))
+    }
+
+    #[inline(always)]
+    fn rows(self, columns: [Fine<Self>; 8]) -> [[f64; 8]; BLOCK] {
+        let mut rows = [[0.0; 8]; BLOCK];
+        for l in 0..W {
+            for c in 0..8 {
+                rows[l][c] = columns[c].value[l];
+            }
+        }
+        rows
+    }
+
+    #[inline(always)]
+    fn add_row(self, row: &Row<R>, entry: Entry, sums: [f64; 8]) -> [f64; 8] {
+        let (factors, mut sums) = (factors(row, entry), if entry.begins() { [0.0; 8] } else { sums });
         for k in 0..8 {
             sums[k] += factors[k] * row.0[k].to_f64();
         }
@@ -257,6 +309,15 @@ impl<R: Real, const W: usize> Lanes for Plain<R, W> {
             }
         }
     }
+}
+
+/// The factors of the eight numbers of an outcome: the force on the second pebble is opposite; the moments of both have
+/// the same sign.
+#[inline(always)]
+pub fn factors<R: Real>(outcome: &Row<R>, entry: Entry) -> [f64; 8] {
+    let sign = if entry.is_second() { -1.0 } else { 1.0 };
+    let arm = -outcome[6 + usize::from(entry.is_second())].to_f64();
+    [sign, sign, sign, arm, arm, arm, arm, arm]
 }
 
 #[inline(always)]

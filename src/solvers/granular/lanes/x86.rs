@@ -4,9 +4,10 @@
 //! line separately. No closures here: the compiler would not use the instructions of the calling function in their
 //! bodies.
 
-use super::{Columns, Fine, Lanes, Num, Row, Vector, Work};
+use super::{BLOCK, Columns, Fine, FineVector, Lanes, Num, Row, Vector, Work};
+use crate::solvers::granular::entry::Entry;
 use crate::solvers::granular::record::Compact;
-use bytemuck::{cast, cast_ref, must_cast};
+use bytemuck::{cast, cast_mut, cast_ref, must_cast};
 use pulp::NullaryFnOnce;
 use pulp::x86::{V3, V4};
 use std::arch::x86_64::{__m128, __m256, __m256d, __m512, __m512d, __m512i};
@@ -44,11 +45,17 @@ impl Wide {
 
     /// Words of eight records, record by record, to eight words of one kind each.
     #[inline(always)]
-    fn columns(self, records: &[Compact], index: &[u32]) -> [__m512d; 8] {
+    fn words(self, records: &[Compact], index: &[u32]) -> [__m512d; 8] {
         let mut rows = [self.0.avx512f._mm512_setzero_pd(); 8];
         for l in 0..8 {
             rows[l] = *cast_ref(&records[index[l] as usize]);
         }
+        self.transpose(rows)
+    }
+
+    /// Eight rows of eight words to eight columns.
+    #[inline(always)]
+    fn transpose(self, rows: [__m512d; 8]) -> [__m512d; 8] {
         let mut columns = rows;
         let s = self.0.avx512f;
         for odd in 0..2 {
@@ -78,6 +85,21 @@ impl Wide {
         }
         let value = self.0.avx512f._mm512_permutex2var_ps(cast(low), cast::<_, __m512i>(which), cast(high));
         Num { lanes: self, value }
+    }
+
+    /// Sixteen pairs of numbers as two times eight words.
+    #[inline(always)]
+    fn interleaved(self, first: Num<Self>, second: Num<Self>) -> [__m512d; 2] {
+        let mut words = [self.0.avx512f._mm512_setzero_pd(); 2];
+        for half in 0..2 {
+            let mut which = [0; 16];
+            for l in 0..16 {
+                which[l] = (8 * half + l / 2 + 16 * (l % 2)) as i32;
+            }
+            let s = self.0.avx512f;
+            words[half] = cast(s._mm512_permutex2var_ps(first.value, cast::<_, __m512i>(which), second.value));
+        }
+        words
     }
 
     #[inline(always)]
@@ -243,7 +265,7 @@ impl Lanes for Wide {
 
     #[inline(always)]
     fn gather(self, records: &[Compact], index: &[u32]) -> Columns<Self> {
-        let (low, high) = (self.columns(records, &index[..8]), self.columns(records, &index[8..16]));
+        let (low, high) = (self.words(records, &index[..8]), self.words(records, &index[8..16]));
         Columns {
             position: [self.fine(low[0], high[0]), self.fine(low[1], high[1]), self.fine(low[2], high[2])],
             radius: self.fine(low[6], high[6]),
@@ -261,11 +283,92 @@ impl Lanes for Wide {
         }
     }
 
+    #[inline(always)]
+    fn move_records(
+        self,
+        records: &mut [Compact],
+        index: &[u32; BLOCK],
+        position: FineVector<Self>,
+        velocity: Vector<Self>,
+        spin: Vector<Self>,
+    ) {
+        let (FineVector([x, y, z]), Vector([u, v, w]), Vector([p, q, r])) = (position, velocity, spin);
+        let motion = [self.interleaved(u, v), self.interleaved(w, p), self.interleaved(q, r)];
+        for half in 0..2 {
+            let [x, y, z] = [x.value[half], y.value[half], z.value[half]];
+            let [uv, wp, qr] = [motion[0][half], motion[1][half], motion[2][half]];
+            // radius and mass keep their words
+            let rows = self.transpose([x, y, z, uv, wp, qr, qr, qr]);
+            for l in 0..8 {
+                if let Some(record) = records.get_mut(index[8 * half + l] as usize) {
+                    let words: &mut __m512d = cast_mut(record);
+                    *words = self.0.avx512f._mm512_mask_blend_pd(0b0011_1111, *words, rows[l]);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn columns(self, rows: [&[f64; 8]; BLOCK]) -> [Fine<Self>; 8] {
+        let mut halves = [[self.0.avx512f._mm512_setzero_pd(); 8]; 2];
+        for half in 0..2 {
+            for l in 0..8 {
+                halves[half][l] = must_cast(*rows[8 * half + l]);
+            }
+            halves[half] = self.transpose(halves[half]);
+        }
+        let mut columns = [self.fine(halves[0][0], halves[1][0]); 8];
+        for c in 0..8 {
+            columns[c] = self.fine(halves[0][c], halves[1][c]);
+        }
+        columns
+    }
+
+    #[inline(always)]
+    fn short_columns(self, rows: [&[f64; 4]; BLOCK]) -> [Fine<Self>; 4] {
+        let s = self.0.avx512f;
+        let mut columns = [self.fine(s._mm512_setzero_pd(), s._mm512_setzero_pd()); 4];
+        for half in 0..2 {
+            // rows 0 and 2, 1 and 3, 4 and 6, 5 and 7 of the half side by side
+            let mut sides = [s._mm512_setzero_pd(); 4];
+            for (side, first) in [0, 1, 4, 5].into_iter().enumerate() {
+                let (left, right) = (*rows[8 * half + first], *rows[8 * half + first + 2]);
+                sides[side] = must_cast([left, right]);
+            }
+            let [a, b, c, d] = sides;
+            let even = [s._mm512_unpacklo_pd(a, b), s._mm512_unpacklo_pd(c, d)];
+            let odd = [s._mm512_unpackhi_pd(a, b), s._mm512_unpackhi_pd(c, d)];
+            columns[0].value[half] = s._mm512_shuffle_f64x2::<0x88>(even[0], even[1]);
+            columns[1].value[half] = s._mm512_shuffle_f64x2::<0x88>(odd[0], odd[1]);
+            columns[2].value[half] = s._mm512_shuffle_f64x2::<0xdd>(even[0], even[1]);
+            columns[3].value[half] = s._mm512_shuffle_f64x2::<0xdd>(odd[0], odd[1]);
+        }
+        columns
+    }
+
+    #[inline(always)]
+    fn rows(self, columns: [Fine<Self>; 8]) -> [[f64; 8]; BLOCK] {
+        let mut halves = [[self.0.avx512f._mm512_setzero_pd(); 8]; 2];
+        for half in 0..2 {
+            for c in 0..8 {
+                halves[half][c] = columns[c].value[half];
+            }
+            halves[half] = self.transpose(halves[half]);
+        }
+        must_cast(halves)
+    }
+
     // products of two numbers in single precision are exact in double: fused or not, the same bits
     #[inline(always)]
-    fn add_row(self, row: &Row<f32>, factors: [f64; 8], sums: [f64; 8]) -> [f64; 8] {
-        let s = self.0.avx512f;
-        must_cast(s._mm512_fmadd_pd(s._mm512_cvtps_pd(must_cast(row.0)), must_cast(factors), must_cast(sums)))
+    fn add_row(self, row: &Row<f32>, entry: Entry, sums: [f64; 8]) -> [f64; 8] {
+        let (s, row) = (self.0.avx512f, must_cast::<_, __m256>(row.0));
+        let (avx, second) = (self.0.avx, u32::from(entry.is_second()));
+        let arm = self.0.avx2._mm256_permutevar8x32_ps(row, avx._mm256_set1_epi32(6 + second as i32));
+        let arm = avx._mm256_xor_ps(arm, avx._mm256_set1_ps(-0.0));
+        let sign = avx._mm256_set1_ps(f32::from_bits(1f32.to_bits() | second << 31));
+        let factors = avx._mm256_blend_ps::<0b1111_1000>(sign, arm);
+        let sums = s._mm512_maskz_mov_pd(u8::from(entry.begins()).wrapping_sub(1), must_cast(sums));
+        must_cast(s._mm512_fmadd_pd(s._mm512_cvtps_pd(row), s._mm512_cvtps_pd(factors), sums))
     }
 
     #[inline(always)]
@@ -313,7 +416,7 @@ impl Middle {
 impl Middle {
     /// Words of four records, record by record, to eight words of one kind each.
     #[inline(always)]
-    fn columns(self, records: &[Compact], index: &[u32]) -> [__m256d; 8] {
+    fn words(self, records: &[Compact], index: &[u32]) -> [__m256d; 8] {
         let mut rows = [[self.0.avx._mm256_setzero_pd(); 2]; 4];
         for l in 0..4 {
             rows[l] = *cast_ref(&records[index[l] as usize]);
@@ -356,6 +459,13 @@ impl Middle {
     #[inline(always)]
     fn fine(self, low: __m256d, high: __m256d) -> Fine<Self> {
         Fine { lanes: self, value: [low, high] }
+    }
+
+    /// Eight pairs of numbers as two times four words.
+    #[inline(always)]
+    fn interleaved(self, first: Num<Self>, second: Num<Self>) -> [__m256d; 2] {
+        let (s, [low, high]) = (self.0.avx, self.pair(first, second));
+        [s._mm256_permute2f128_pd::<0x20>(low, high), s._mm256_permute2f128_pd::<0x31>(low, high)]
     }
 
     /// Numbers of two columns in turn, lower and upper halves of each four.
@@ -517,7 +627,7 @@ impl Lanes for Middle {
 
     #[inline(always)]
     fn gather(self, records: &[Compact], index: &[u32]) -> Columns<Self> {
-        let (low, high) = (self.columns(records, &index[..4]), self.columns(records, &index[4..8]));
+        let (low, high) = (self.words(records, &index[..4]), self.words(records, &index[4..8]));
         let ([u, v], [w, p]) = (self.halves(low[3], high[3]), self.halves(low[4], high[4]));
         let ([q, r], [mass, _]) = (self.halves(low[5], high[5]), self.halves(low[7], high[7]));
         Columns {
@@ -529,10 +639,101 @@ impl Lanes for Middle {
         }
     }
 
+    #[inline(always)]
+    fn move_records(
+        self,
+        records: &mut [Compact],
+        index: &[u32; BLOCK],
+        position: FineVector<Self>,
+        velocity: Vector<Self>,
+        spin: Vector<Self>,
+    ) {
+        let (FineVector([x, y, z]), Vector([u, v, w]), Vector([p, q, r])) = (position, velocity, spin);
+        let motion = [self.interleaved(u, v), self.interleaved(w, p), self.interleaved(q, r)];
+        for half in 0..2 {
+            let [uv, wp, qr] = [motion[0][half], motion[1][half], motion[2][half]];
+            let front = self.transpose([x.value[half], y.value[half], z.value[half], uv]);
+            let back = self.transpose([wp, qr, wp, qr]);
+            for l in 0..4 {
+                if let Some(record) = records.get_mut(index[4 * half + l] as usize) {
+                    let words: &mut [__m256d; 2] = cast_mut(record);
+                    // radius and mass keep their words
+                    *words = [front[l], self.0.avx._mm256_blend_pd::<0b0011>(words[1], back[l])];
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn columns(self, rows: [&[f64; 8]; BLOCK]) -> [Fine<Self>; 8] {
+        let zero = self.0.avx._mm256_setzero_pd();
+        let mut columns = [self.fine(zero, zero); 8];
+        for half in 0..2 {
+            let mut words = [[zero; 2]; 4];
+            for l in 0..4 {
+                words[l] = must_cast(*rows[4 * half + l]);
+            }
+            for side in 0..2 {
+                let four = self.transpose([words[0][side], words[1][side], words[2][side], words[3][side]]);
+                for c in 0..4 {
+                    columns[4 * side + c].value[half] = four[c];
+                }
+            }
+        }
+        columns
+    }
+
+    #[inline(always)]
+    fn short_columns(self, rows: [&[f64; 4]; BLOCK]) -> [Fine<Self>; 4] {
+        let zero = self.0.avx._mm256_setzero_pd();
+        let mut columns = [self.fine(zero, zero); 4];
+        for half in 0..2 {
+            let mut words = [zero; 4];
+            for l in 0..4 {
+                words[l] = must_cast(*rows[4 * half + l]);
+            }
+            let four = self.transpose(words);
+            for c in 0..4 {
+                columns[c].value[half] = four[c];
+            }
+        }
+        columns
+    }
+
+    #[inline(always)]
+    fn rows(self, columns: [Fine<Self>; 8]) -> [[f64; 8]; BLOCK] {
+        let mut rows = [[0.0; 8]; BLOCK];
+        for half in 0..2 {
+            let mut sides = [[self.0.avx._mm256_setzero_pd(); 4]; 2];
+            for side in 0..2 {
+                let of = 4 * side;
+                sides[side] = self.transpose([
+                    columns[of].value[half],
+                    columns[of + 1].value[half],
+                    columns[of + 2].value[half],
+                    columns[of + 3].value[half],
+                ]);
+            }
+            for l in 0..4 {
+                rows[4 * half + l] = must_cast([sides[0][l], sides[1][l]]);
+            }
+        }
+        rows
+    }
+
     // products of two numbers in single precision are exact in double: fused or not, the same bits
     #[inline(always)]
-    fn add_row(self, row: &Row<f32>, factors: [f64; 8], sums: [f64; 8]) -> [f64; 8] {
-        must_cast(self.fine_fma(self.widen(must_cast(row.0)), must_cast(factors), must_cast(sums)))
+    fn add_row(self, row: &Row<f32>, entry: Entry, sums: [f64; 8]) -> [f64; 8] {
+        let (s, row) = (self.0.avx, must_cast::<_, __m256>(row.0));
+        let second = u32::from(entry.is_second());
+        let arm = self.0.avx2._mm256_permutevar8x32_ps(row, s._mm256_set1_epi32(6 + second as i32));
+        let arm = s._mm256_xor_ps(arm, s._mm256_set1_ps(-0.0));
+        let sign = s._mm256_set1_ps(f32::from_bits(1f32.to_bits() | second << 31));
+        let factors = s._mm256_blend_ps::<0b1111_1000>(sign, arm);
+        let kept = s._mm256_set1_pd(f64::from_bits(u64::from(entry.begins()).wrapping_sub(1)));
+        let [low, high]: [__m256d; 2] = must_cast(sums);
+        let sums = [s._mm256_and_pd(low, kept), s._mm256_and_pd(high, kept)];
+        must_cast(self.fine_fma(self.widen(row), self.widen(factors), sums))
     }
 
     #[inline(always)]

@@ -13,6 +13,7 @@
 use super::super::bed::Bed;
 use super::super::body::SPHERE;
 use super::super::critical::{Link, Roots, reduced};
+use super::super::entry::Entry;
 use super::super::failure::Failure;
 use super::super::force::Tangent;
 use super::super::lanes::{BLOCK, Real};
@@ -193,8 +194,8 @@ impl<'a, R: Real> Acting<'a, R> {
         for pebble in body.first as usize..body.first as usize + usize::from(body.pebbles) {
             let radius = bed.records[pebble].radius();
             let offset = centre.map_or([0.0; 3], |centre| sub(bed.records[pebble].position(), centre));
-            for &entry in bed.entries_of(pebble) {
-                let at = (entry >> 1) as usize;
+            for &entry in bed.incidence.contacts_of(pebble) {
+                let at = entry.place();
                 let Some(&Spot { normal, along, across }) = self.spots.get(at) else {
                     let slot = at - self.spots.len();
                     if let Some(bond) = slot.checked_sub(bed.wall_contacts.slots.len()) {
@@ -211,7 +212,7 @@ impl<'a, R: Real> Acting<'a, R> {
                 if along == 0.0 && across == 0.0 {
                     continue;
                 }
-                let sign = if entry & 1 == 0 { 1.0 } else { -1.0 };
+                let sign = if entry.is_second() { -1.0 } else { 1.0 };
                 let normal = normal.map(|c| sign * f64::from(c));
                 let share = count(bed.other(entry));
                 // an overlap is a hundred thousandth of a radius
@@ -243,21 +244,16 @@ impl<'a, R: Real> Acting<'a, R> {
     fn neighbours(&self, place: usize) -> impl Iterator<Item = u32> {
         let body = &self.bed.bodies[place];
         let pebbles = body.first as usize..body.first as usize + usize::from(body.pebbles);
-        let entries = pebbles.flat_map(|pebble| self.bed.entries_of(pebble));
-        entries.filter(|entry| ((**entry >> 1) as usize) < self.spots.len()).map(|entry| self.bed.other(*entry))
+        let entries = pebbles.flat_map(|pebble| self.bed.incidence.contacts_of(pebble));
+        entries.filter(|entry| entry.place() < self.spots.len()).map(|entry| self.bed.other(*entry))
     }
 }
 
 impl<R: Real> Bed<R> {
-    /// Contacts of a pebble, walls last.
-    fn entries_of(&self, pebble: usize) -> &[u32] {
-        &self.incidence.entries[self.incidence.start[pebble] as usize..self.incidence.start[pebble + 1] as usize]
-    }
-
     /// Index of the other body of a contact between two bodies.
-    fn other(&self, entry: u32) -> u32 {
-        let pebbles = if entry & 1 == 0 { &self.contacts.second } else { &self.contacts.first };
-        self.owner[pebbles[(entry >> 1) as usize] as usize]
+    fn other(&self, entry: Entry) -> u32 {
+        let pebbles = if entry.is_second() { &self.contacts.first } else { &self.contacts.second };
+        self.owner[pebbles[entry.place()] as usize]
     }
 
     #[inline(always)]
