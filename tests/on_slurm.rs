@@ -14,7 +14,7 @@ mod common {
     pub mod shared_study;
 }
 use common::program::{said, trackbed};
-use common::shared_packings::{assert_same_run, packings};
+use common::shared_packings::{assert_same_run, packings, rig};
 use common::shared_study::{POINTS, STUDY, assert_same_answer, kept_runs};
 
 fn study(out: &Path, more: &[&str]) -> (Option<i32>, String) {
@@ -105,6 +105,33 @@ fn a_study_on_slurm_is_the_study_on_this_machine() {
     let (code, told) = study(&refused, &["--executor", "slurm", "--resume"]);
     assert_eq!(code, Some(0), "with another partition it goes on: {told}");
     assert!(fs::metadata(refused.join("study.csv")).is_ok());
+}
+
+#[test]
+#[ignore = "needs a Slurm: tests/slurm/cluster.sh"]
+fn packings_of_a_rig_on_slurm_are_those_of_this_machine() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.track");
+    fs::write(&scene, rig("200 cycles")).unwrap();
+    let [alone, slurm] = ["alone", "slurm"].map(|name| folder.path().join(name));
+    let arguments = |out: &Path| ["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()].map(String::from);
+    let alone_output = trackbed(&arguments(&alone).each_ref().map(String::as_str));
+    assert_eq!(alone_output.status.code(), Some(0), "{}", said(&alone_output));
+
+    let before = tasks("all").len();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_trackbed"));
+    let command = command.args(arguments(&slurm)).args(["--executor", "slurm"]).env("NO_COLOR", "1");
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    // a task that is killed goes on from its checkpoint
+    wait_for("a checkpoint", || slurm.join(".trackbed/parts/1/.trackbed/checkpoint").exists());
+    let worker = format!("work {} 1", slurm.display());
+    assert!(Command::new("pkill").args(["-KILL", "--full", &worker]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert!(said(&output).contains("given again"), "{}", said(&output));
+    assert!(tasks("all").len() >= before + 2, "each packing is a task: {:?}", tasks("all"));
+    let manifest = |out: &Path| fs::read(out.join("manifest.json")).unwrap();
+    assert_eq!(manifest(&alone), manifest(&slurm));
 }
 
 #[test]

@@ -13,7 +13,7 @@ mod common {
     pub mod shared_study;
 }
 use common::program::{said, trackbed};
-use common::shared_packings::{assert_same_run, packings};
+use common::shared_packings::{assert_same_run, packings, rig};
 use common::shared_study::{POINTS, STUDY, assert_same_answer, kept_runs};
 
 fn study(out: &Path, more: &[&str]) -> (Option<i32>, String) {
@@ -185,4 +185,51 @@ fn packings_of_a_run_are_those_of_one_process() {
     assert_eq!(code, Some(0), "{told}");
     assert!(told.contains("goes on after 16 axles"), "the run itself was computed too: {told}");
     assert_same_run(&alone, &shared);
+}
+
+#[test]
+fn packings_of_a_rig_are_those_of_one_process() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.track");
+    fs::write(&scene, rig("6 cycles")).unwrap();
+    let cache = folder.path().join("beds").display().to_string();
+    let [alone, shared, moved] = ["alone", "shared", "moved"].map(|name| folder.path().join(name));
+    let run = |out: &Path, more: &[&str]| {
+        let arguments = ["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap(), "--cache", &cache];
+        let output = trackbed(&[&arguments, more].concat());
+        (output.status.code(), said(&output))
+    };
+    let (code, told) = run(&alone, &[]);
+    assert_eq!(code, Some(0), "{told}");
+    let all = |out: &Path| fs::read(out.join("manifest.json")).unwrap();
+
+    let (code, told) = run(&shared, &["--executor", "workers"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(told.contains("with 2 runs; start them"), "{told}");
+    // killed in the second packing: the first one is finished
+    let mut child = worker(&shared, &[]).spawn().unwrap();
+    while !shared.join(".trackbed/parts/1/.trackbed/checkpoint").exists() {
+        assert!(child.try_wait().unwrap().is_none(), "killed too late: more cycles are needed");
+        thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(shared.join(".trackbed/parts/0/manifest.json").exists());
+    let copied = Command::new("cp").args(["-r", shared.to_str().unwrap(), moved.to_str().unwrap()]).status().unwrap();
+    assert!(copied.success());
+
+    // another worker goes on, and the run is made of the parts
+    let output = worker(&shared, &[]).spawn().unwrap().wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert!(said(&output).contains("goes on after"), "{}", said(&output));
+    let (code, told) = run(&shared, &["--resume"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert_eq!(all(&alone), all(&shared));
+    assert!(!shared.join(".trackbed/parts").exists(), "parts end with the work");
+
+    // or this process goes on itself
+    let (code, told) = run(&moved, &["--resume"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(told.contains("packing 2 of 2: seed 2") && told.contains("goes on after"), "{told}");
+    assert_eq!(all(&alone), all(&moved));
 }

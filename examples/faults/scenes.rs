@@ -35,19 +35,6 @@ study slab_pads {
 }
 ";
 
-/// Coarse spheres under one sleeper, on two packings.
-const RIG: &str = "use std
-grading coarse { passing = [50 mm: 0 %, 65 mm: 100 %] }
-granular stone {
-  grading = coarse, density = 2700 kg/m^3, contact_stiffness = 13 MN/m per contact, friction = 0.7
-  packing = { lifts = 1, pressure = 200 kPa, friction = 0.2 }
-}
-trackform bed { sleeper = sleepers.B70, spacing = 0.6 m, layers = [stone: 150 mm] }
-track box { sections = [bed: 1 sleeper] }
-load actuator { on = sleepers, at = 1 sleeper, force = cyclic(5 .. 60 kN, 40 Hz) per sleeper, total = 30 cycles }
-solve { substructure = full, repeats = 2 }
-";
-
 /// The line of the coarse scene that says how it is solved, and others in its place.
 const SOLVE: &str = "solve { substructure = cells, passages = continuous, update_every = 8 axles, tolerance = 20 % }";
 const FULL: &str = "solve { substructure = full, window = -1.8 .. 1.2 m, support_from = passage }
@@ -71,7 +58,7 @@ pub fn all(with_slurm: bool) -> Vec<Work> {
         run("full, iterated", on_grains(FULL, 8), 100),
         run("full, monolithic", on_grains(MONOLITHIC, 4), 100),
         run("cells, three packings", shared_packings::packings(), 80),
-        run("test rig", RIG.to_owned(), 120),
+        run("test rig", shared_packings::rig("30 cycles"), 120),
         Work { command: "study", more: &["--jobs", "1"], ..run("study", ON_A_LAW.to_owned(), 100) },
         Work {
             command: "study",
@@ -83,6 +70,11 @@ pub fn all(with_slurm: bool) -> Vec<Work> {
             more: &["--executor", "slurm"],
             on_slurm: true,
             ..run("packings on Slurm", shared_packings::packings(), 30)
+        },
+        Work {
+            more: &["--executor", "slurm"],
+            on_slurm: true,
+            ..run("test rig on Slurm", shared_packings::rig("30 cycles"), 30)
         },
     ];
     works.into_iter().filter(|work| with_slurm || !work.on_slurm).collect()

@@ -1,8 +1,7 @@
-//! Packings of a run on a cluster: that of the run itself and further ones, each a task that goes on from its
-//! checkpoint when it was lost.
+//! Packings of a run on a cluster, each a task that goes on from its checkpoint when it was lost.
 //!
-//! The task of the run itself goes as far as the last axle and keeps its state. Whoever watches goes on from there
-//! when all packings are finished: the last passage, tables and pages of the run need them all.
+//! The task of the run itself of a track goes as far as the last axle and keeps its state. Whoever watches goes on from
+//! there when all packings are finished: the last passage, tables and pages of the run need them all.
 
 use super::cluster::{Elsewhere, Executor, keep_ledger, put_json};
 use super::task::{Packings, Task};
@@ -10,7 +9,6 @@ use super::{Outcome, interrupt};
 use crate::cluster::{ClusterError, Ledger, Need, Work};
 use crate::execute::{Event, Listener};
 use crate::graph::Graph;
-use crate::scenario::Scenario;
 use crate::store::{self, Directory, Finished, StoreError, Unfinished};
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -35,10 +33,12 @@ pub(super) fn computed(run: &Path) -> Result<(), StoreError> {
     }
 }
 
-/// What a run takes, once for each of its packings.
-pub(super) fn needs(graph: &Graph, scenario: &Scenario) -> Vec<Need> {
-    let further = if graph.has_grains_under_track() { scenario.solve.grains.repeats - 1 } else { 0 };
-    (0..=further).map(|_| Need { seconds: graph.cost.seconds, bytes: graph.cost.bytes, goes_on: true }).collect()
+/// Where a packing of a run is computed.
+pub(super) enum Piece {
+    /// In the directory of the run itself, up to its last axle.
+    Itself,
+    /// In a directory of its own, as this work.
+    Apart(PathBuf, store::Work),
 }
 
 /// Has other processes compute all packings: gives them to Slurm and waits for them, or writes them for workers.
@@ -47,11 +47,11 @@ pub(super) fn perform(
     run: Packings,
     asked: &Elsewhere<'_>,
     state: &Unfinished,
-    (needs, further): (Vec<Need>, Vec<(PathBuf, store::Work)>),
+    (needs, pieces): (Vec<Need>, Vec<Piece>),
 ) -> Result<Option<Outcome>, ClusterError> {
     let watched = state.claim("watch")?;
     let _watched = watched.ok_or_else(|| StoreError::Busy { path: state.path().to_owned() })?;
-    let pieces = Pieces { run, state, needs, further };
+    let pieces = Pieces { run, state, needs, pieces };
     match asked.arguments.executor {
         Executor::Local => Ok(None),
         Executor::Slurm => asked.watch(&pieces, state),
@@ -59,14 +59,13 @@ pub(super) fn perform(
     }
 }
 
-/// The packings of a run as pieces of work, by how much their seeds are above that of the scene.
+/// The packings of a run as pieces of work, by how much their seeds are above the seed of the scene.
 struct Pieces<'a> {
     /// What every task needs.
     run: Packings,
     state: &'a Unfinished,
     needs: Vec<Need>,
-    /// Directory of each further packing, and what is done there.
-    further: Vec<(PathBuf, store::Work)>,
+    pieces: Vec<Piece>,
 }
 
 impl Work for Pieces<'_> {
@@ -76,13 +75,15 @@ impl Work for Pieces<'_> {
 
     fn missing(&self) -> Result<BTreeSet<usize>, StoreError> {
         let mut missing = BTreeSet::new();
-        if !self.state.keys()?.contains(COMPUTED) {
-            missing.insert(0);
-        }
-        for (number, (directory, work)) in self.further.iter().enumerate() {
-            let is_done = Finished::open(directory)?.is_some_and(|finished| finished.manifest().work == *work);
+        for (number, piece) in self.pieces.iter().enumerate() {
+            let is_done = match piece {
+                Piece::Itself => self.state.keys()?.contains(COMPUTED),
+                Piece::Apart(directory, work) => {
+                    Finished::open(directory)?.is_some_and(|finished| finished.manifest().work == *work)
+                }
+            };
             if !is_done {
-                missing.insert(number + 1);
+                missing.insert(number);
             }
         }
         Ok(missing)

@@ -11,7 +11,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// The scene a command works on.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 pub(super) struct SceneArguments {
     /// The scene: a `.track` file.
     pub file: PathBuf,
@@ -36,7 +36,7 @@ impl SeedArgument {
 }
 
 /// Which passes of the planner are left out.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 pub(super) struct PassArguments {
     /// Leave out a pass of the planner, so that its error can be measured; `trackbed plan` names them.
     #[arg(long, value_name = "PASS")]

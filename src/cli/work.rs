@@ -2,7 +2,7 @@
 //! of others.
 
 use super::task::{Packings, Task};
-use super::{Outcome, interrupt, pack, run, stored, terminal};
+use super::{Outcome, interrupt, pack, run_packings, stored, terminal};
 use crate::check::{self, Folder, Remembered};
 use crate::compile::fingerprint;
 use crate::diag::{Code, Diagnostic, Sources};
@@ -81,7 +81,7 @@ fn stopped() -> Outcome {
 /// Computes packings of a run, unless somebody else computes them.
 fn some_packings(state: &Unfinished, packings: &Packings, number: usize) -> Result<(), Outcome> {
     match state.claim(&Task::key(number)).map_err(|error| of_store(&error))? {
-        Some(_claim) => run::packings_of(state.path(), packings),
+        Some(_claim) => run_packings::compute_shared(state, packings),
         None => Ok(()),
     }
 }

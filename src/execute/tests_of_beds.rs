@@ -62,7 +62,7 @@ struct Test<'a, 'l> {
 impl Test<'_, '_> {
     /// Packs and tests, or continues a stored test; `None` if a listener ended it.
     fn run(&mut self, running: Option<TestState>) -> Result<Option<(Tested, Bed<f32>)>, RunError> {
-        let seed = self.bed.bed.seed().wrapping_add(self.done.len() as u64);
+        let seed = self.bed.bed.seed().wrapping_add(u64::from(self.tests.first) + self.done.len() as u64);
         let ready = self.bed.bed.ready(seed).map_err(|cause| failed_after(0, NodeError::Bed(cause)))?;
         let found = self.machine.beds.bed(&ready.recipe, |progress| self.listener.hear(&Event::Packing(progress)));
         let found = match found.map_err(NodeError::from) {

@@ -143,6 +143,20 @@ impl Graph {
         bed.zip(loads)
     }
 
+    /// The same graph with the test of one packing only, by its place among all packings.
+    #[must_use]
+    pub fn with_one_packing(mut self, place: u32) -> Graph {
+        if let Schedule::Actuators(tests) = &mut self.schedule {
+            (tests.first, tests.packings) = (tests.first + place, 1);
+        }
+        self
+    }
+
+    /// Number of packings that are computed independently of each other: tests of beds.
+    pub fn tested_packings(&self) -> Option<u32> {
+        if let Schedule::Actuators(tests) = &self.schedule { Some(tests.packings.max(1)) } else { None }
+    }
+
     /// The loop over axles; `None` if no train runs.
     pub fn blocks(&self) -> Option<&Blocks> {
         if let Schedule::Blocks(blocks) = &self.schedule { Some(blocks) } else { None }

@@ -48,6 +48,9 @@ pub enum LoadedPart {
 /// Tests under actuators.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Tests {
+    /// The seed of the first packing minus the seed of the bed.
+    #[serde(default)]
+    pub first: u32,
     /// Number of packings; their seeds are consecutive.
     pub packings: u32,
     /// Cycles whose loops of force and depth and sensor readings are kept; the first cycle is 1.

@@ -40,7 +40,7 @@ pub use bed::{BedLayer, BedSummary, bed_summary};
 pub use bed_readings::{BedReadings, Directions, PlateTest, ProfileRow, keep_readings, kept_readings, read_bed};
 pub use bed_tests::{
     BedTest, BedTests, BedTestsView, CycleRow, LoopRow, MeanCycleRow, SensorRow, SpecimenRow, TestTables, VolumeRow,
-    read_tests, test_files,
+    read_tests, test_files, tests_file,
 };
 pub use confidence::{confidence_of_difference, mean_and_confidence, mean_and_deviation};
 pub use error::ResultsError;

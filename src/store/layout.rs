@@ -11,6 +11,7 @@
 //! .trackbed/claims/      locks of pieces that are being computed, by the same keys
 //! .trackbed/gate         shared lock for processes that add pieces, exclusive lock for the end of the work
 //! .trackbed/logs/        output of processes on other machines
+//! .trackbed/parts/       directories of parts of the work; each is like this one, with work of its own
 //! .trackbed/staging/     files of the next results
 //! .trackbed/intent.json  the manifest of staged files that are being moved to their places
 //! ```
@@ -63,6 +64,10 @@ impl Layout {
 
     pub fn logs(&self) -> PathBuf {
         self.inner().join("logs")
+    }
+
+    pub fn parts(&self) -> PathBuf {
+        self.inner().join("parts")
     }
 
     pub fn staging(&self) -> PathBuf {

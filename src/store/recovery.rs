@@ -67,7 +67,7 @@ pub(super) fn discard(disk: &impl Disk, layout: &Layout) -> Result<(), StoreErro
     for written in [layout.checkpoint(), layout.work(), layout.so_far(), layout.intent()] {
         file(part(&written))?;
     }
-    for folder in [layout.pieces(), layout.claims(), layout.logs()] {
+    for folder in [layout.pieces(), layout.claims(), layout.logs(), layout.parts()] {
         disk.remove_folder(&folder).map_err(|cause| StoreError::io(&folder, "remove", cause))?;
     }
     file(layout.so_far())?;

@@ -54,6 +54,11 @@ impl Unfinished {
         &self.layout.root
     }
 
+    /// The directory of a part of the work that has checkpoints and results of its own. It is removed with the work.
+    pub fn part(&self, name: &str) -> PathBuf {
+        self.layout.parts().join(name)
+    }
+
     /// The state of the last checkpoint; `None` if there is none. Fails if it is damaged, or if it has another scene or
     /// version.
     pub fn read_checkpoint<T: DeserializeOwned>(&self) -> Result<Option<T>, StoreError> {

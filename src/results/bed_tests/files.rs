@@ -35,11 +35,16 @@ pub fn test_files(view: &BedTestsView, directory: &Path) -> Result<Vec<NamedByte
     if tests.tests.iter().any(|test| !test.answer.specimen.is_empty()) {
         files.push((SpecimenRow::FILE, table(&tests.specimen(), directory)?));
     }
-    let whole = serde_json::to_vec(view).map_err(|cause| ResultsError::unwritable(&directory.join(VIEW), cause))?;
     files.extend([
-        (VIEW, whole),
+        (VIEW, tests_file(view, directory)?.1),
         (BEDS, json(&beds, &directory.join(BEDS))?),
         (SUMMARY, json(&run.summary, &directory.join(SUMMARY))?),
     ]);
     Ok(files.into_iter().map(|(name, bytes)| (name.to_owned(), bytes)).collect())
+}
+
+/// The file of the view of tests, which [`read_tests`](super::read_tests) reads. `directory` is used in messages only.
+pub fn tests_file(view: &BedTestsView, directory: &Path) -> Result<NamedBytes, ResultsError> {
+    let bytes = serde_json::to_vec(view).map_err(|cause| ResultsError::unwritable(&directory.join(VIEW), cause))?;
+    Ok((VIEW.to_owned(), bytes))
 }

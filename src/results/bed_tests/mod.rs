@@ -4,7 +4,7 @@ mod files;
 mod summarise;
 mod view;
 
-pub use files::test_files;
+pub use files::{test_files, tests_file};
 pub use summarise::{MeanCycleRow, TestTables};
 pub use view::{BedTestsView, read_tests};
 

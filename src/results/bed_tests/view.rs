@@ -27,6 +27,12 @@ impl BedTestsView {
         let (grains, links) = (grains(bed, &snapshot, None), links(bed, &snapshot));
         Ok(Some(BedTestsView { run, tests, grains, links, walls: bed.walls().to_vec(), domain: *bed.domain() }))
     }
+
+    /// The view of a run, of the views of all its packings in their order; `None` if there are no tests.
+    pub fn of_packings(mut run: Run, mut packings: Vec<BedTestsView>) -> Option<BedTestsView> {
+        let (tests, last) = (run.tests.take()?, packings.pop()?);
+        Some(BedTestsView { run, tests, ..last })
+    }
 }
 
 /// The tests of a directory; `None` if it holds none.

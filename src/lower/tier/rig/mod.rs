@@ -60,7 +60,8 @@ impl Tier for TestRig {
         };
         let bed = nodes.iter().find_map(|node| if let Model::Bed(bed) = &node.model { Some(&**bed) } else { None });
         let cost = cost::of_rig(scenario, bed);
-        let tests = Tests { packings: scenario.solve.grains.repeats, kept: kept(scenario, cycles(&loads(scenario))) };
+        let kept = kept(scenario, cycles(&loads(scenario)));
+        let tests = Tests { first: 0, packings: scenario.solve.grains.repeats, kept };
         Ok(Proposal {
             edges: edges(&nodes),
             nodes,
