@@ -112,7 +112,7 @@ fn a_study_on_slurm_is_the_study_on_this_machine() {
 fn packings_of_a_rig_on_slurm_are_those_of_this_machine() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("scene.track");
-    fs::write(&scene, rig("200 cycles")).unwrap();
+    fs::write(&scene, rig("60 cycles")).unwrap();
     let [alone, slurm] = ["alone", "slurm"].map(|name| folder.path().join(name));
     let arguments = |out: &Path| ["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()].map(String::from);
     let alone_output = trackbed(&arguments(&alone).each_ref().map(String::as_str));
