@@ -4,22 +4,23 @@
 //! its neighbours, so the number of lists made and their reach affect only the speed.
 
 use super::bed::Bed;
-use super::body::{Body, SPHERE};
+use super::body::{Body, Clump, SPHERE};
 use super::contacts::{BlockVector, Contacts};
-use super::domain::{mirrored, steps_of};
+use super::domain::{Image, mirrored, steps_of};
 use super::entry::Entry;
 use super::failure::Failure;
 use super::force::Outcome;
 use super::incidence::Incidence;
-use super::integrate::{TASK, Task};
 use super::lanes::{BLOCK, Real};
 use super::order::Strips;
 use super::record::Record;
 use super::search::{CellTooSmall, Grids, Pair, Seen};
+use super::tasks::{TASK, Task};
 use super::vector::{dot, norm, sub};
 use super::walls::{Kept, Near, Wall, WallContacts, moved};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Number of steps that lists should last; their reach grows until they do.
 const LIFE: u64 = 400;
@@ -49,7 +50,7 @@ impl<R: Real> Histories<R> {
         let mut start = vec![0u32; bodies + 1];
         all.iter().for_each(|c| start[c.low.0 as usize + 1] += 1);
         (0..bodies).for_each(|b| start[b + 1] += start[b]);
-        all.sort_unstable_by_key(|c| (c.low, c.high));
+        all.par_sort_unstable_by_key(|c| (c.low, c.high));
         Histories { start, all }
     }
 
@@ -57,6 +58,15 @@ impl<R: Real> Histories<R> {
         let range = self.start[low.0 as usize] as usize..self.start[low.0 as usize + 1] as usize;
         self.all[range].iter().find(|c| c.low == low && c.high == high)
     }
+}
+
+/// Pairs of a task in blocks; the names are those of [`Contacts`].
+#[derive(Default)]
+struct Blocked {
+    first: Vec<u32>,
+    second: Vec<u32>,
+    image: Vec<Image>,
+    law: Vec<u16>,
 }
 
 impl<R: Real> Bed<R> {
@@ -105,21 +115,23 @@ impl<R: Real> Bed<R> {
 
     /// Contact histories of all contacts between pebbles.
     pub(super) fn carried(&self) -> Vec<Carried<R>> {
+        let blocks = (0..self.contacts.law.len()).into_par_iter().with_min_len(256);
+        blocks.flat_map_iter(|block| (0..BLOCK).filter_map(move |lane| self.history(block, lane))).collect()
+    }
+
+    /// History of the contact in a lane of a block; `None` if it has none.
+    fn history(&self, block: usize, lane: usize) -> Option<Carried<R>> {
         let contacts = &self.contacts;
-        let mut carried = Vec::new();
-        for place in 0..contacts.len() {
-            let (block, lane) = (place / BLOCK, place % BLOCK);
-            let of =
-                |vectors: &[BlockVector<R>]| [0, 1, 2].map(|c| vectors.get(block).map_or(R::default(), |v| v[c][lane]));
-            let (shear, damping) = (of(&contacts.shear), of(&contacts.damping));
-            if shear.iter().chain(&damping).all(|&s| s == R::default()) {
-                continue;
-            }
-            let (a, b) = (self.name(contacts.first[place]), self.name(contacts.second[place]));
-            let swap = |v: [R; 3]| if a < b { v } else { v.map(|c| -c) };
-            carried.push(Carried { low: a.min(b), high: a.max(b), shear: swap(shear), damping: swap(damping) });
+        let of =
+            |vectors: &[BlockVector<R>]| [0, 1, 2].map(|c| vectors.get(block).map_or(R::default(), |v| v[c][lane]));
+        let (shear, damping) = (of(&contacts.shear), of(&contacts.damping));
+        if shear.iter().chain(&damping).all(|&s| s == R::default()) {
+            return None;
         }
-        carried
+        let place = block * BLOCK + lane;
+        let (a, b) = (self.name(contacts.first[place]), self.name(contacts.second[place]));
+        let swap = |v: [R; 3]| if a < b { v } else { v.map(|c| -c) };
+        Some(Carried { low: a.min(b), high: a.max(b), shear: swap(shear), damping: swap(damping) })
     }
 
     pub(super) fn kept(&self) -> Vec<Kept<R>> {
@@ -136,7 +148,9 @@ impl<R: Real> Bed<R> {
         self.choose_skin();
         self.sort();
         let histories = Histories::new(carried, self.bodies.len());
-        self.contacts = Contacts::default();
+        // the memory of the outcomes is used again: new memory costs more than the sums of a step
+        let outcomes = std::mem::take(&mut self.contacts.outcomes);
+        self.contacts = Contacts { outcomes, ..Contacts::default() };
         self.incidence = Incidence::default();
         let seen = self.seen();
         let domain = self.domain;
@@ -231,8 +245,8 @@ impl<R: Real> Bed<R> {
         };
         let strips = Strips::through(self.bodies.iter().map(place));
         let key = |(index, body)| (strips.key(place(body)), index as u32);
-        let mut order: Vec<(u64, u32)> = self.bodies.iter().enumerate().map(key).collect();
-        order.sort_unstable_by_key(|&(key, index)| (key, self.bodies[index as usize].id));
+        let mut order: Vec<(u64, u32)> = self.bodies.par_iter().enumerate().map(key).collect();
+        order.par_sort_unstable_by_key(|&(key, index)| (key, self.bodies[index as usize].id));
         if order.iter().enumerate().all(|(new, &(_, old))| new as u32 == old) {
             self.records.truncate(self.owner.len());
         } else {
@@ -247,29 +261,35 @@ impl<R: Real> Bed<R> {
     }
 
     fn permute(&mut self, order: &[(u64, u32)]) {
-        let mut records = Vec::with_capacity(self.owner.len() + 2);
+        let (mut bodies, mut clumps) = (Vec::with_capacity(order.len()), Vec::with_capacity(self.clumps.len()));
         let mut owner = Vec::with_capacity(self.owner.len());
-        let mut clumps = Vec::with_capacity(self.clumps.len());
-        let mut bodies = Vec::with_capacity(self.bodies.len());
-        let mut arms = Vec::with_capacity(self.arms.len());
+        let mut arms = 0;
         for (new, &(_, old)) in order.iter().enumerate() {
             let mut body = self.bodies[old as usize];
-            let range = body.first as usize..body.first as usize + usize::from(body.pebbles);
-            body.first = records.len() as u32;
-            records.extend_from_slice(&self.records[range]);
-            owner.resize(records.len(), new as u32);
+            body.first = owner.len() as u32;
+            owner.resize(owner.len() + usize::from(body.pebbles), new as u32);
             if body.clump != SPHERE {
-                let mut clump = self.clumps[body.clump as usize];
-                let own = clump.arms as usize..clump.arms as usize + usize::from(body.pebbles);
-                clump.arms = arms.len() as u64;
-                arms.extend_from_slice(&self.arms[own]);
-                body.clump = clumps.len() as u32;
-                clumps.push(clump);
+                let clump = self.clumps[body.clump as usize];
+                clumps.push(Clump { arms, ..clump });
+                arms += u64::from(body.pebbles);
+                body.clump = clumps.len() as u32 - 1;
             }
             self.index[body.id as usize] = new as u32;
             bodies.push(body);
         }
-        (self.records, self.owner, self.clumps, self.bodies, self.arms) = (records, owner, clumps, bodies, arms);
+        let old = |&(_, old): &(u64, u32)| &self.bodies[old as usize];
+        // with room for two idle ones
+        let mut records = Vec::with_capacity(self.owner.len() + 2);
+        records.par_extend(order.par_iter().map(old).flat_map_iter(|body| {
+            let first = body.first as usize;
+            self.records[first..first + usize::from(body.pebbles)].iter().copied()
+        }));
+        let arms = order.par_iter().map(old).filter(|body| body.clump != SPHERE).flat_map_iter(|body| {
+            let first = self.clumps[body.clump as usize].arms as usize;
+            self.arms[first..first + usize::from(body.pebbles)].iter().copied()
+        });
+        (self.records, self.arms) = (records, arms.collect());
+        (self.owner, self.clumps, self.bodies) = (owner, clumps, bodies);
     }
 
     fn seen(&self) -> Vec<Seen> {
@@ -278,37 +298,27 @@ impl<R: Real> Bed<R> {
             let cell = self.bodies[body as usize].cell;
             Seen { cell, offset: record.position(), radius: record.radius(), body }
         };
-        self.owner.iter().enumerate().map(of).collect()
+        self.owner.par_iter().enumerate().map(of).collect()
     }
 
     /// Puts pairs into blocks with one law each, task by task, with their histories.
     fn fill(&mut self, pairs: Vec<Vec<Pair>>, histories: &Histories<R>) {
-        let idle = self.owner.len() as u32;
-        let mut contacts = Contacts::default();
         let mut tasks = self.tasks();
-        let count: usize = pairs.iter().map(Vec::len).sum();
-        let room = count + BLOCK * tasks.len();
-        contacts.first.reserve(room);
-        contacts.second.reserve(room);
-        contacts.image.reserve(room);
-        let class = |pair: &Pair| {
-            let surface = |pebble: u32| self.bodies[self.owner[pebble as usize] as usize].surface;
-            self.laws.class(surface(pair.first), surface(pair.second))
-        };
-        let sorted = self.by_task(pairs, tasks.len() - 1);
-        for (task, mut pairs) in sorted.into_iter().enumerate() {
-            tasks[task].block = contacts.law.len() as u32;
-            pairs.sort_by_key(class);
-            for run in pairs.chunk_by(|a, b| class(a) == class(b)) {
-                contacts.first.extend(run.iter().map(|p| p.first));
-                contacts.second.extend(run.iter().map(|p| p.second));
-                contacts.image.extend(run.iter().map(|p| p.image));
-                let padded = contacts.first.len().next_multiple_of(BLOCK);
-                contacts.first.resize(padded, idle);
-                contacts.second.resize(padded, idle + 1);
-                contacts.image.resize(padded, 0);
-                contacts.law.resize(padded / BLOCK, class(&run[0]));
-            }
+        let blocked: Vec<Blocked> =
+            self.by_task(&pairs, tasks.len() - 1).into_par_iter().map(|pairs| self.blocked(pairs)).collect();
+        drop(pairs);
+        let outcomes = std::mem::take(&mut self.contacts.outcomes);
+        let mut contacts = Contacts { outcomes, ..Contacts::default() };
+        let blocks = blocked.iter().map(|blocked| blocked.law.len()).sum::<usize>();
+        contacts.first.reserve(blocks * BLOCK);
+        contacts.second.reserve(blocks * BLOCK);
+        contacts.image.reserve(blocks * BLOCK);
+        for (task, blocked) in tasks.iter_mut().zip(blocked) {
+            task.block = contacts.law.len() as u32;
+            contacts.first.extend(blocked.first);
+            contacts.second.extend(blocked.second);
+            contacts.image.extend(blocked.image);
+            contacts.law.extend(blocked.law);
         }
         tasks.last_mut().expect("an end").block = contacts.law.len() as u32;
         self.lists.tasks = tasks;
@@ -317,22 +327,51 @@ impl<R: Real> Bed<R> {
         if self.ledger.watched {
             contacts.damping = vec![zero; contacts.law.len()];
         }
-        for place in 0..contacts.len() {
-            if contacts.first[place] == idle || histories.all.is_empty() {
-                continue;
-            }
-            let (a, b) = (self.name(contacts.first[place]), self.name(contacts.second[place]));
-            let Some(carried) = histories.find(a.min(b), a.max(b)) else { continue };
-            let sign = if a < b { R::from_f64(1.0) } else { R::from_f64(-1.0) };
-            let (block, lane) = (place / BLOCK, place % BLOCK);
-            for c in 0..3 {
-                contacts.shear[block][c][lane] = sign * carried.shear[c];
-                if let Some(damping) = contacts.damping.get_mut(block) {
-                    damping[c][lane] = sign * carried.damping[c];
-                }
-            }
+        if !histories.all.is_empty() {
+            self.hand_over(histories, &mut contacts);
         }
         self.contacts = contacts;
+    }
+
+    /// Blocks of the pairs of a task, with one law each.
+    fn blocked(&self, mut pairs: Vec<Pair>) -> Blocked {
+        let idle = self.owner.len() as u32;
+        let class = |pair: &Pair| {
+            let surface = |pebble: u32| self.bodies[self.owner[pebble as usize] as usize].surface;
+            self.laws.class(surface(pair.first), surface(pair.second))
+        };
+        pairs.sort_by_cached_key(class);
+        let mut blocked = Blocked::default();
+        for run in pairs.chunk_by(|a, b| class(a) == class(b)) {
+            blocked.first.extend(run.iter().map(|p| p.first));
+            blocked.second.extend(run.iter().map(|p| p.second));
+            blocked.image.extend(run.iter().map(|p| p.image));
+            let padded = blocked.first.len().next_multiple_of(BLOCK);
+            blocked.first.resize(padded, idle);
+            blocked.second.resize(padded, idle + 1);
+            blocked.image.resize(padded, 0);
+            blocked.law.resize(padded / BLOCK, class(&run[0]));
+        }
+        blocked
+    }
+
+    /// Puts the histories of contacts that continue into their places.
+    fn hand_over(&self, histories: &Histories<R>, contacts: &mut Contacts<R>) {
+        let Contacts { first, second, shear, damping, .. } = contacts;
+        let idle = self.owner.len() as u32;
+        let carried = |place: usize| {
+            let (a, b) = (self.name(first[place]), self.name(second[place]));
+            let sign = if a < b { R::from_f64(1.0) } else { R::from_f64(-1.0) };
+            histories.find(a.min(b), a.max(b)).map(|carried| (sign, carried))
+        };
+        let put = |(block, values): (usize, &mut BlockVector<R>), part: fn(&Carried<R>) -> [R; 3]| {
+            for lane in (0..BLOCK).filter(|lane| first[block * BLOCK + lane] != idle) {
+                let Some((sign, carried)) = carried(block * BLOCK + lane) else { continue };
+                (0..3).for_each(|c| values[c][lane] = sign * part(carried)[c]);
+            }
+        };
+        shear.par_iter_mut().enumerate().with_min_len(64).for_each(|block| put(block, |carried| carried.shear));
+        damping.par_iter_mut().enumerate().with_min_len(64).for_each(|block| put(block, |carried| carried.damping));
     }
 
     /// Renumbers the intact bonds, drops the broken bonds, and allocates the results of all contacts.
@@ -340,7 +379,9 @@ impl<R: Real> Bed<R> {
         self.bonds.dropped = self.broken_bonds();
         self.bind(self.bonds.held())?;
         let places = self.contacts.len() + self.wall_contacts.slots.len() + self.bonds.places();
-        self.contacts.outcomes = vec![Outcome::default(); places];
+        // and one that stays 0
+        self.contacts.outcomes.clear();
+        self.contacts.outcomes.resize(places + 1, Outcome::default());
         Ok(())
     }
 
@@ -350,76 +391,92 @@ impl<R: Real> Bed<R> {
         let mut clump = 0;
         for (place, body) in self.bodies.iter().enumerate() {
             if place % TASK == 0 {
-                tasks.push(Task { body: place as u32, pebble: body.first, clump, block: 0 });
+                tasks.push(Task { body: place as u32, pebble: body.first, clump, block: 0, group: 0 });
             }
             clump += u32::from(body.clump != SPHERE);
         }
-        tasks.push(Task { body: self.bodies.len() as u32, pebble: self.owner.len() as u32, clump, block: 0 });
+        tasks.push(Task { body: self.bodies.len() as u32, pebble: self.owner.len() as u32, clump, block: 0, group: 0 });
         tasks
     }
 
     /// Pairs by the task of the earlier of their bodies; most pairs are found in this task.
-    fn by_task(&self, pairs: Vec<Vec<Pair>>, tasks: usize) -> Vec<Vec<Pair>> {
+    fn by_task(&self, pairs: &[Vec<Pair>], tasks: usize) -> Vec<Vec<Pair>> {
         let task = |pair: &Pair| self.owner[pair.first as usize].min(self.owner[pair.second as usize]) as usize / TASK;
-        let mut counts = vec![0; tasks];
-        pairs.iter().flatten().for_each(|pair| counts[task(pair)] += 1);
-        let mut sorted: Vec<Vec<Pair>> = counts.into_iter().map(Vec::with_capacity).collect();
-        // memory is freed as soon as it is not needed
-        for found in pairs {
-            found.iter().for_each(|pair| sorted[task(pair)].push(*pair));
-        }
+        // numbers of the tasks in which the pairs of a list are, in the order of the pairs
+        let found: Vec<Vec<(usize, Vec<Pair>)>> = pairs
+            .par_iter()
+            .map(|list| {
+                let mut parts: BTreeMap<usize, Vec<Pair>> = BTreeMap::new();
+                list.iter().for_each(|pair| parts.entry(task(pair)).or_default().push(*pair));
+                parts.into_iter().collect()
+            })
+            .collect();
+        let mut sorted = vec![Vec::new(); tasks];
+        found.into_iter().flatten().for_each(|(task, part)| sorted[task].extend(part));
         sorted
     }
 
     /// Lists the contacts of each pebble in an order that is the same in all copies of a bay.
     fn connect(&mut self) {
-        let (pebbles, contacts) = (self.owner.len(), &self.contacts);
-        assert!(contacts.outcomes.len() < 1 << 30, "contacts are numbered by thirty bits");
-        let idle = pebbles as u32;
+        let (pebbles, outcomes) = (self.owner.len(), self.contacts.outcomes.len());
+        assert!(outcomes < 1 << 31, "contacts are numbered by 31 bits");
+        // every thread reads all contacts, and lists those of its own pebbles
+        let share = pebbles.div_ceil(rayon::current_num_threads()).max(1);
         let mut start = vec![0u32; pebbles + 1];
-        let real = || (0..contacts.len()).filter(|&place| contacts.first[place] != idle);
-        let mut count = |pebble: u32, by: u32| start[pebble as usize + 1] += by;
-        for place in real() {
-            count(contacts.first[place], 1);
-            count(contacts.second[place], 1);
-        }
-        self.wall_contacts.entries.iter().for_each(|e| count(e.pebble, e.slots.1 - e.slots.0));
-        let bonds = || (0..self.bonds.places()).filter_map(|place| Some((place as u32, self.bonds.pebbles(place)?)));
-        bonds().flat_map(|(_, both)| both).for_each(|pebble| count(pebble, 1));
+        start[1..].par_chunks_mut(share).enumerate().for_each(|(part, counts)| {
+            self.each_entry(|pebble, _| {
+                if let Some(count) = counts.get_mut((pebble as usize).wrapping_sub(part * share)) {
+                    *count += 1;
+                }
+            });
+        });
         (0..pebbles).for_each(|p| start[p + 1] += start[p]);
         let mut entries = vec![Entry::new(0, false); start[pebbles] as usize];
-        let mut next = start.clone();
-        let mut put = |pebble: u32, entry: Entry| {
-            entries[next[pebble as usize] as usize] = entry;
-            next[pebble as usize] += 1;
-        };
-        for place in real() {
-            put(contacts.first[place], Entry::new(place as u32, false));
-            put(contacts.second[place], Entry::new(place as u32, true));
+        let (mut rest, mut parts) = (&mut entries[..], Vec::new());
+        for first in (0..pebbles).step_by(share) {
+            let own = &start[first..=(first + share).min(pebbles)];
+            let (part, others) = rest.split_at_mut((own[own.len() - 1] - own[0]) as usize);
+            parts.push((first, own, part));
+            rest = others;
+        }
+        parts.into_par_iter().for_each(|(first, own, part)| self.list(first, own, part));
+        let nothing = Entry::new(outcomes as u32 - 1, false);
+        self.incidence = Incidence::new(start, entries, &mut self.lists.tasks, nothing);
+    }
+
+    /// Lists the contacts of the pebbles from `first` on; `start` holds their first entries and one final value.
+    fn list(&self, first: usize, start: &[u32], entries: &mut [Entry]) {
+        let place = |start: u32, of: &[u32]| (start - of[0]) as usize;
+        let mut next: Vec<usize> = start[..start.len() - 1].iter().map(|&s| place(s, start)).collect();
+        self.each_entry(|pebble, entry| {
+            if let Some(next) = next.get_mut((pebble as usize).wrapping_sub(first)) {
+                entries[*next] = entry;
+                *next += 1;
+            }
+        });
+        for ends in start.windows(2) {
+            let list = &mut entries[place(ends[0], start)..place(ends[1], start)];
+            list.sort_unstable_by_key(|&entry| self.order_of(entry));
+        }
+    }
+
+    /// Visits every contact, once for each of its pebbles.
+    fn each_entry(&self, mut visit: impl FnMut(u32, Entry)) {
+        let (contacts, idle) = (&self.contacts, self.owner.len() as u32);
+        for place in (0..contacts.len()).filter(|&place| contacts.first[place] != idle) {
+            visit(contacts.first[place], Entry::new(place as u32, false));
+            visit(contacts.second[place], Entry::new(place as u32, true));
         }
         let walls = contacts.len() as u32;
         for entry in &self.wall_contacts.entries {
-            (entry.slots.0..entry.slots.1).for_each(|slot| put(entry.pebble, Entry::new(walls + slot, false)));
+            (entry.slots.0..entry.slots.1).for_each(|slot| visit(entry.pebble, Entry::new(walls + slot, false)));
         }
-        let behind = walls + self.wall_contacts.slots.len() as u32;
-        for (place, [first, second]) in bonds() {
-            put(first, Entry::new(behind + place, false));
-            put(second, Entry::new(behind + place, true));
+        let bonds = walls + self.wall_contacts.slots.len() as u32;
+        for place in 0..self.bonds.places() {
+            let Some([first, second]) = self.bonds.pebbles(place) else { continue };
+            visit(first, Entry::new(bonds + place as u32, false));
+            visit(second, Entry::new(bonds + place as u32, true));
         }
-        let mut rest = &mut entries[..];
-        let mut lists = Vec::with_capacity(pebbles);
-        for p in 0..pebbles {
-            let (list, others) = rest.split_at_mut((start[p + 1] - start[p]) as usize);
-            lists.push(list);
-            rest = others;
-        }
-        lists.into_par_iter().with_min_len(1024).for_each(|list| {
-            list.sort_unstable_by_key(|&entry| self.order_of(entry));
-            if let Some(first) = list.first_mut() {
-                *first = first.at_the_beginning();
-            }
-        });
-        self.incidence = Incidence { start, entries };
     }
 
     /// Sort key of a contact among the contacts of its pebble: first the cell of the neighbour relative to the pebble,
@@ -444,15 +501,15 @@ impl<R: Real> Bed<R> {
         let records = &self.records[..self.owner.len()];
         self.lists.origin = records.chunks(BLOCK).map(|block| block[0].position()).collect();
         let origin = &self.lists.origin;
-        self.lists.reference =
-            records.iter().enumerate().map(|(p, r)| sub(r.position(), origin[p / BLOCK]).map(|x| x as f32)).collect();
+        let from_origin = |(p, r): (usize, &R::Record)| sub(r.position(), origin[p / BLOCK]).map(|x| x as f32);
+        self.lists.reference = records.par_iter().enumerate().map(from_origin).collect();
         self.lists.walls = self.walls.iter().map(|w| w.pose).collect();
         self.walls.iter_mut().filter_map(|w| w.sheet.as_mut()).for_each(|sheet| sheet.remember());
         let far = |wall: &Wall| {
-            let pebbles = records.iter().zip(&self.owner);
-            pebbles
-                .map(|(r, &b)| norm(wall.to(&self.domain, self.bodies[b as usize].cell, r.position())))
-                .fold(0.0, f64::max)
+            let pebbles = records.par_iter().zip(&self.owner);
+            let distance =
+                |(r, &b): (&R::Record, &u32)| norm(wall.to(&self.domain, self.bodies[b as usize].cell, r.position()));
+            pebbles.map(distance).reduce(|| 0.0, f64::max)
         };
         let planes = self.walls.iter().filter(|w| w.shape.bounds().is_none());
         self.lists.extent = planes.map(far).fold(0.0, f64::max) + self.lists.skin;

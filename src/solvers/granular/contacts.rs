@@ -2,9 +2,9 @@
 
 use super::domain::{Domain, Image};
 use super::force::{ForceRule, Meeting, Outcome, Prepared, outcome};
-use super::integrate::Task;
 use super::lanes::{BLOCK, Fine, Lanes, Num, Real, Vector, Work};
 use super::prefetch::prefetch;
+use super::tasks::Task;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

@@ -48,7 +48,7 @@ impl<R: Real> Bed<R> {
         let walls = bytes(walls, 2 * size_of::<Slot<R>>() + 2 * outcome)
             + bytes(self.wall_contacts.entries.len(), size_of::<Entry>());
         let motion = bytes(places, outcome)
-            + bytes(self.incidence.entries.len() + self.incidence.start.len(), size_of::<u32>())
+            + self.incidence.bytes_per_step()
             + bytes(self.bodies.len(), 2 * size_of::<Body>())
             + bytes(self.clumps.len(), 2 * size_of::<Clump>())
             + bytes(self.arms.len(), size_of::<Arm>())

@@ -6,21 +6,11 @@ use super::incidence::{Felt, Incidence};
 use super::lanes::{BLOCK, Fine, FineVector, Lanes, NOWHERE, Real, Work};
 use super::prefetch::prefetch;
 use super::rotation;
+use super::tasks::Task;
 use super::vector::{Vec3, dot};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-
-/// Bodies of one task. The number is fixed, so that the number of threads does not change the results.
-pub(super) const TASK: usize = 512;
-
-/// First indices of a task: bodies, pebbles, clumps and blocks of contacts.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Task {
-    pub body: u32,
-    pub pebble: u32,
-    pub clump: u32,
-    pub block: u32,
-}
+use std::ops::Range;
 
 /// Parameters that drive a step.
 #[derive(Debug, Clone, Copy)]
@@ -82,22 +72,61 @@ struct Share<'a, R: Real> {
     drive: &'a Drive,
 }
 
+/// Forces on the pebbles of a task.
+enum Forces<'a, R: Real> {
+    /// Those of the contacts of its groups.
+    OfContacts {
+        acting: Acting<'a, R>,
+        groups: Range<u32>,
+    },
+    Known(&'a [Felt]),
+}
+
 /// Contacts, and their forces on the bodies.
-pub(super) struct Forces<'a, R: Real> {
+pub(super) struct Acting<'a, R: Real> {
     pub incidence: &'a Incidence,
     pub outcomes: &'a [Outcome<R>],
 }
 
-impl<R: Real> Clone for Forces<'_, R> {
+impl<R: Real> Clone for Acting<'_, R> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<R: Real> Copy for Forces<'_, R> {}
+impl<R: Real> Copy for Acting<'_, R> {}
+
+/// What all pebbles of `tasks` feel, in their order.
+pub(super) fn felt<R: Real>(tasks: &[Task], acting: Acting<R>) -> Vec<Felt> {
+    let pebbles = |(task, next): (&Task, &Task)| {
+        R::dispatch(Summing { acting, groups: task.group..next.group, count: (next.pebble - task.pebble) as usize })
+    };
+    tasks.iter().zip(&tasks[1..]).flat_map(pebbles).collect()
+}
+
+/// The sums of a task alone.
+struct Summing<'a, R: Real> {
+    acting: Acting<'a, R>,
+    groups: Range<u32>,
+    count: usize,
+}
+
+impl<R: Real> Work<R> for Summing<'_, R> {
+    type Output = Vec<Felt>;
+
+    #[inline(always)]
+    fn run<L: Lanes<Real = R>>(self, lanes: L) -> Vec<Felt> {
+        self.acting.incidence.felt(lanes, (self.groups, self.count), self.acting.outcomes)
+    }
+}
+
+/// Moves one body by one step under known forces.
+pub(super) fn advance_alone<R: Real>(moving: Moving<R>, at: Task, felt: &[Felt], drive: &Drive) -> Tally {
+    R::dispatch(Share { at, moving, forces: Forces::Known(felt), drive })
+}
 
 /// Moves the bodies of `tasks` by one step under the forces of their contacts.
-pub(super) fn advance<R: Real>(moving: Moving<R>, tasks: &[Task], forces: Forces<R>, drive: &Drive) -> Tally {
+pub(super) fn advance<R: Real>(moving: Moving<R>, tasks: &[Task], acting: Acting<R>, drive: &Drive) -> Tally {
     let Moving { mut bodies, mut records, mut clumps, arms } = moving;
     let mut shares = Vec::with_capacity(tasks.len());
     for (task, next) in tasks.iter().zip(&tasks[1..]) {
@@ -105,6 +134,7 @@ pub(super) fn advance<R: Real>(moving: Moving<R>, tasks: &[Task], forces: Forces
         let (some_records, rest_records) = records.split_at_mut((next.pebble - task.pebble) as usize);
         let (some_clumps, rest_clumps) = clumps.split_at_mut((next.clump - task.clump) as usize);
         let moving = Moving { bodies: some_bodies, records: some_records, clumps: some_clumps, arms };
+        let forces = Forces::OfContacts { acting, groups: task.group..next.group };
         shares.push(Share { at: *task, moving, forces, drive });
         (bodies, records, clumps) = (rest_bodies, rest_records, rest_clumps);
     }
@@ -118,9 +148,14 @@ impl<R: Real> Work<R> for Share<'_, R> {
     #[inline(always)]
     fn run<L: Lanes<Real = R>>(mut self, lanes: L) -> Tally {
         let count = self.moving.bodies.len();
-        let first = self.at.pebble as usize;
-        let Forces { incidence, outcomes } = self.forces;
-        let felt = incidence.felt(lanes, first..first + self.moving.records.len(), outcomes);
+        let summed;
+        let felt = match &self.forces {
+            Forces::Known(felt) => *felt,
+            Forces::OfContacts { acting: Acting { incidence, outcomes }, groups } => {
+                summed = incidence.felt(lanes, (groups.clone(), self.moving.records.len()), outcomes);
+                &summed
+            }
+        };
         let mut told = Told { speeds: vec![0.0; count], spent: Vec::new() };
         if self.drive.watched {
             told.spent = vec![[0.0; SPENT]; count];
@@ -136,23 +171,23 @@ impl<R: Real> Work<R> for Share<'_, R> {
             if kind.clump == SPHERE {
                 spheres.put(Member { body, pebble, pebbles, clump: 0 });
                 if spheres.count == L::WIDTH {
-                    self.spheres(lanes, &spheres, &felt, &mut told);
+                    self.spheres(lanes, &spheres, felt, &mut told);
                     spheres.count = 0;
                 }
             } else {
                 composed.put(Member { body, pebble, pebbles, clump });
                 clump += 1;
                 if composed.count == L::WIDTH {
-                    self.composed(lanes, &composed, &felt, &mut told);
+                    self.composed(lanes, &composed, felt, &mut told);
                     composed.count = 0;
                 }
             }
         }
         if spheres.count > 0 {
-            self.spheres(lanes, &spheres, &felt, &mut told);
+            self.spheres(lanes, &spheres, felt, &mut told);
         }
         if composed.count > 0 {
-            self.composed(lanes, &composed, &felt, &mut told);
+            self.composed(lanes, &composed, felt, &mut told);
         }
         told.sum_up(self.at.body)
     }

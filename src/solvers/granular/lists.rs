@@ -1,7 +1,7 @@
 //! The age of the contact lists: their reach, and all positions at the time when they were made.
 
-use super::integrate::Task;
 use super::motion::Pose;
+use super::tasks::Task;
 use super::vector::Vec3;
 
 /// When lists were made, and how long they are valid.

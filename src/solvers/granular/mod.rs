@@ -72,6 +72,7 @@ mod sheet;
 mod snapshot;
 mod step;
 mod stride;
+mod tasks;
 mod timings;
 mod union;
 mod vector;

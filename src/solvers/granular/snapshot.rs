@@ -4,9 +4,10 @@ use super::bed::Bed;
 use super::body::{BodyId, SPHERE};
 use super::failure::Failure;
 use super::force::force_of;
-use super::integrate::{self, Drive, Forces, Moving, Task};
+use super::integrate::{self, Acting, Drive, Moving};
 use super::lanes::{BLOCK, Real};
 use super::record::Record;
+use super::tasks::Task;
 use super::vector::{Vec3, add, norm, scale, sub};
 use super::walls::WallId;
 
@@ -123,21 +124,22 @@ impl<R: Real> Bed<R> {
             damping: self.damping,
             watched: true,
         };
-        let forces = Forces { incidence: &self.incidence, outcomes: &self.contacts.outcomes };
+        let acting = Acting { incidence: &self.incidence, outcomes: &self.contacts.outcomes };
+        let felt = integrate::felt(&self.lists.tasks, acting);
         let mut tally = integrate::Tally::default();
         for &place in &self.index {
             let body = self.bodies[place as usize];
             let clump = (body.clump != SPHERE).then_some(body.clump);
-            let from = Task { body: place, pebble: body.first, clump: clump.unwrap_or_default(), block: 0 };
-            let pebble = body.first + u32::from(body.pebbles);
-            let to = Task { body: place + 1, pebble, clump: from.clump + u32::from(clump.is_some()), block: 0 };
+            let clumps = clump.map_or(0..0, |clump| clump as usize..clump as usize + 1);
+            let pebbles = body.first as usize..body.first as usize + usize::from(body.pebbles);
+            let at = Task { body: place, pebble: body.first, ..Task::default() };
             let moving = Moving {
                 bodies: &mut [body],
-                records: &mut self.records[from.pebble as usize..to.pebble as usize].to_vec(),
-                clumps: &mut self.clumps[from.clump as usize..to.clump as usize].to_vec(),
+                records: &mut self.records[pebbles.clone()].to_vec(),
+                clumps: &mut self.clumps[clumps].to_vec(),
                 arms: &self.arms,
             };
-            tally = tally.and(integrate::advance::<R>(moving, &[from, to], forces, &drive));
+            tally = tally.and(integrate::advance_alone::<R>(moving, at, &felt[pebbles], &drive));
         }
         tally
     }

@@ -5,7 +5,7 @@ use super::contacts::{ContactEnergy, Surroundings, shifts};
 use super::energy::Energy;
 use super::failure::Failure;
 use super::force::Prepared;
-use super::integrate::{self, Drive, Forces, Moving, Tally};
+use super::integrate::{self, Acting, Drive, Moving, Tally};
 use super::lanes::Real;
 use super::motion::{Felt, WallMotion};
 use super::sheet::Sheet;
@@ -128,8 +128,8 @@ impl<R: Real> Bed<R> {
                     clumps: &mut self.clumps[tasks[0].clump as usize..],
                     arms: &self.arms,
                 };
-                let forces = Forces { incidence: &self.incidence, outcomes: &self.contacts.outcomes };
-                tally = tally.and(integrate::advance::<R>(moving, tasks, forces, drive));
+                let acting = Acting { incidence: &self.incidence, outcomes: &self.contacts.outcomes };
+                tally = tally.and(integrate::advance::<R>(moving, tasks, acting, drive));
             }
             self.timings.forces += forced - start;
             self.timings.motion += forced.elapsed();

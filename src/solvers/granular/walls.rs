@@ -197,23 +197,23 @@ impl<R: Real> WallContacts<R> {
         walls: &[Wall],
         around: Near,
         laws: &ContactLaws,
-        about: impl Fn(u32) -> (u32, u16, u16),
+        about: impl Fn(u32) -> (u32, u16, u16) + Sync,
         kept: &[Kept<R>],
     ) -> Self {
         let Near { domain, seen, skin, .. } = around;
         let mut all = WallContacts::default();
         let mut near = Vec::new();
         for (number, wall) in walls.iter().enumerate() {
-            let mut candidates = wall.candidates(around);
-            candidates.sort_unstable_by_key(|&p| about(p));
+            let named = wall.candidates(around).into_par_iter().map(|pebble| (about(pebble), pebble));
+            let mut candidates: Vec<((u32, u16, u16), u32)> = named.collect();
+            candidates.par_sort_unstable();
             candidates.dedup();
-            for pebble in candidates {
+            for ((body, part, surface), pebble) in candidates {
                 let me = &seen[pebble as usize];
                 let away = wall.to(domain, me.cell, me.offset);
                 if !wall.near(domain, away, me.radius + skin, &mut near) {
                     continue;
                 }
-                let (body, part, surface) = about(pebble);
                 let room = if matches!(wall.shape, Shape::Mesh(_)) { near.len() as u32 } else { 1 };
                 let (facet, slot) = (all.facets.len() as u32, all.slots.len() as u32);
                 all.facets.extend(&near);

@@ -15,8 +15,6 @@ mod x86;
 
 pub use fine::{FineVector, Matrix};
 pub use plain::Plain;
-#[cfg(test)]
-pub use plain::factors;
 
 use super::entry::Entry;
 use super::record::Record;
@@ -114,7 +112,8 @@ pub trait Lanes: Copy {
     fn less(self, a: Self::Num, b: Self::Num) -> Self::Mask;
     /// `yes` if the mask is set, otherwise `no`, lane by lane.
     fn select(self, mask: Self::Mask, yes: Self::Num, no: Self::Num) -> Self::Num;
-    fn any(self, mask: Self::Mask) -> bool;
+    /// One bit per lane, the first lane lowest.
+    fn bits(self, mask: Self::Mask) -> u32;
 
     fn fine_splat(self, value: f64) -> Self::Fine;
     fn fine_load(self, from: &[f64]) -> Self::Fine;
@@ -149,9 +148,10 @@ pub trait Lanes: Copy {
     fn short_columns(self, rows: [&[f64; 4]; BLOCK]) -> [Fine<Self>; 4];
     /// Eight columns, transposed to a row per lane.
     fn rows(self, columns: [Fine<Self>; 8]) -> [[f64; 8]; BLOCK];
-    /// `factors row + sums` for the eight numbers of an outcome, see `factors` in `plain.rs`; the sums
-    /// begin at 0 where the entry begins.
-    fn add_row(self, row: &Row<Self::Real>, entry: Entry, sums: [f64; 8]) -> [f64; 8];
+    /// The outcomes of contacts, one per lane, transposed.
+    fn gather_rows(self, rows: &[Row<Self::Real>], entries: &[Entry]) -> [Num<Self>; 8];
+    /// Set for the second of the two pebbles of a contact.
+    fn of_second(self, entries: &[Entry]) -> Self::Mask;
     /// Eight numbers per lane, written lane by lane.
     fn scatter(self, columns: [Num<Self>; 8], to: &mut [Row<Self::Real>]);
 }
@@ -296,6 +296,12 @@ impl<L: Lanes> Vector<L> {
         let [x, y, z] = self.0;
         let zero = Num::splat(x.lanes, 0.0);
         Vector([x.where_or(mask, zero), y.where_or(mask, zero), z.where_or(mask, zero)])
+    }
+
+    #[inline(always)]
+    pub fn widen(self) -> FineVector<L> {
+        let [x, y, z] = self.0;
+        FineVector([x.widen(), y.widen(), z.widen()])
     }
 
     #[inline(always)]

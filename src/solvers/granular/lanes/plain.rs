@@ -115,8 +115,12 @@ impl<R: Real, const W: usize> Lanes for Plain<R, W> {
         out
     }
     #[inline(always)]
-    fn any(self, mask: [bool; W]) -> bool {
-        mask.contains(&true)
+    fn bits(self, mask: [bool; W]) -> u32 {
+        let mut bits = 0;
+        for l in 0..W {
+            bits |= u32::from(mask[l]) << l;
+        }
+        bits
     }
 
     #[inline(always)]
@@ -293,12 +297,23 @@ impl<R: Real, const W: usize> Lanes for Plain<R, W> {
     }
 
     #[inline(always)]
-    fn add_row(self, row: &Row<R>, entry: Entry, sums: [f64; 8]) -> [f64; 8] {
-        let (factors, mut sums) = (factors(row, entry), if entry.begins() { [0.0; 8] } else { sums });
-        for k in 0..8 {
-            sums[k] += factors[k] * row.0[k].to_f64();
+    fn gather_rows(self, rows: &[Row<R>], entries: &[Entry]) -> [Num<Self>; 8] {
+        let mut columns = [[R::default(); W]; 8];
+        for l in 0..W {
+            for c in 0..8 {
+                columns[c][l] = rows[entries[l].place()][c];
+            }
         }
-        sums
+        columns.map(|value| num(self, value))
+    }
+
+    #[inline(always)]
+    fn of_second(self, entries: &[Entry]) -> [bool; W] {
+        let mut mask = [false; W];
+        for l in 0..W {
+            mask[l] = entries[l].is_second();
+        }
+        mask
     }
 
     #[inline(always)]
@@ -309,15 +324,6 @@ impl<R: Real, const W: usize> Lanes for Plain<R, W> {
             }
         }
     }
-}
-
-/// The factors of the eight numbers of an outcome: the force on the second pebble is opposite; the moments of both have
-/// the same sign.
-#[inline(always)]
-pub fn factors<R: Real>(outcome: &Row<R>, entry: Entry) -> [f64; 8] {
-    let sign = if entry.is_second() { -1.0 } else { 1.0 };
-    let arm = -outcome[6 + usize::from(entry.is_second())].to_f64();
-    [sign, sign, sign, arm, arm, arm, arm, arm]
 }
 
 #[inline(always)]
