@@ -370,7 +370,7 @@ mod tests {
                 found.iter().flatten().map(|pair| (pair.first.min(pair.second), pair.first.max(pair.second))).collect();
             found.sort_unstable();
             let tried = tried(&domain, &seen, 0.002);
-            assert!(tried.len() > 3000, "{}", tried.len());
+            assert!(tried.len() > 1000, "{}", tried.len());
             assert_eq!(found, tried, "{domain:?}");
         }
     }
