@@ -218,6 +218,12 @@ fn packings_of_a_rig_are_those_of_one_process() {
     let copied = Command::new("cp").args(["-r", shared.to_str().unwrap(), moved.to_str().unwrap()]).status().unwrap();
     assert!(copied.success());
 
+    // an edit of the scene is told, and nothing is computed from it
+    fs::write(&scene, rig("7 cycles")).unwrap();
+    let output = worker(&shared, &[]).spawn().unwrap().wait_with_output().unwrap();
+    assert!(output.status.code() == Some(1) && said(&output).contains("E0809"), "{}", said(&output));
+    fs::write(&scene, rig("6 cycles")).unwrap();
+
     // another worker goes on, and the run is made of the parts
     let output = worker(&shared, &[]).spawn().unwrap().wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));

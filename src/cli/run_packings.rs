@@ -10,6 +10,7 @@ use super::scene::{not_yet, show};
 use super::task::Packings;
 use super::{Outcome, stored, terminal};
 use crate::cluster::Need;
+use crate::diag::{Code, Diagnostic};
 use crate::execute::{self, Both};
 use crate::graph::Graph;
 use crate::results::{self, RunRecorder};
@@ -87,6 +88,11 @@ pub(super) fn compute_shared(run: &Unfinished, packings: &Packings) -> Result<()
         return Err(not_yet(&compiled));
     };
     let running = Running::new(&request, &compiled, (scenario, graph));
+    if running.work != *run.work() {
+        let said = format!("`{}` is not the scene of the run any more", packings.scene.display());
+        let help = "take the edit back, or begin the run anew with `--force`";
+        return Err(running.stop(Diagnostic::new(Code::E0809, said).help(help)));
+    }
     for place in &packings.packings {
         match place {
             place if graph.tested_packings().is_some() => part(run, *place, &running)?,
