@@ -203,9 +203,9 @@ fn text_of_steps(m: &TimedSteps) -> String {
         ("forces", p.forces),
         ("walls", p.walls),
         ("motion", p.motion),
-        ("rail", p.rail),
-        ("soil", p.soil),
-        ("inertia, other", p.inertia),
+        ("inertia", p.inertia),
+        ("rail, beside", p.rail),
+        ("soil, beside", p.soil),
     ] {
         out += &format!("  {label:<18}{ms:>8.3} ms\n");
     }

@@ -11,6 +11,7 @@ use crate::nodes::{Load, NodeError};
 use crate::solvers::granular::{Answer, Stride};
 use crate::solvers::track::{Spring, WheelLoads};
 use std::ops::{ControlFlow, Range};
+use std::time::Instant;
 
 /// Longest time in which a built track must come to rest, s.
 const LONGEST: f64 = 2.0;
@@ -39,12 +40,14 @@ impl Coupled {
 
     /// Adds the inertia that the contacts of now need for the step.
     pub fn hold(&mut self) -> Result<(), NodeError> {
+        let start = Instant::now();
         let stride = Stride { step: self.time_step() / OF_STRIDE, sharing: SHARING };
         self.added = 0.0;
         for standing in &mut self.beds {
             self.added = stride.hold(&mut standing.bed)?.max(self.added);
             standing.bed.set_time_step(self.rail.time_step());
         }
+        self.spent.inertia += start.elapsed();
         Ok(())
     }
 

@@ -3,7 +3,8 @@
 //! All go by one leapfrog: forces at the present time, then velocities half a step on, then places. A bed computes its
 //! forces and moves its grains; its sleepers wait until the forces of all beds are known. Then the rail gives the
 //! motion of the sleepers, and the soil the motion of the floor. The interaction of two parts is one number at one
-//! time: force, moment and power are the same on both sides.
+//! time: force, moment and power are the same on both sides. Rail and soil need the forces of sleepers and floors
+//! alone, so they are computed beside the contacts between grains.
 
 use super::soil::SoilBelow;
 use crate::nodes::NodeError;
@@ -35,7 +36,7 @@ pub struct Coupled {
     pub pushes: Vec<f64>,
     /// Largest share of the mass of a bed that is added as inertia.
     pub added: f64,
-    /// Time that the rail and the soil took so far.
+    /// Time that the rail, the soil and the updates of inertia took so far.
     pub spent: Spent,
 }
 
@@ -44,6 +45,7 @@ pub struct Coupled {
 pub struct Spent {
     pub rail: Duration,
     pub soil: Duration,
+    pub inertia: Duration,
 }
 
 impl Coupled {
@@ -64,8 +66,8 @@ impl Coupled {
     }
 }
 
-/// The first bed computes its forces, then all others do; the rail steps when all forces are known, and each bed
-/// continues with the motion of the rail.
+/// The first bed computes the forces on its walls, then all others do; the rail steps when all these forces are known,
+/// and each bed continues with the motion of the rail.
 fn in_turn(
     beds: &mut [StandingBed],
     rail: &mut Leapfrog,

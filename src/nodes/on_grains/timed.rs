@@ -5,7 +5,7 @@ use super::build::Parts;
 use super::energy::PassageEnergy;
 use super::passage::{REACH, median};
 use super::rest::AFTER;
-use super::step::{Coupled, HOLD, StandingBed};
+use super::step::{Coupled, HOLD, Spent, StandingBed};
 use super::wheels::WheelRun;
 use crate::nodes::{Load, NodeError};
 use serde::Serialize;
@@ -36,7 +36,8 @@ pub struct TimedSteps {
     pub idle_m: Option<f64>,
 }
 
-/// Milliseconds of a step by part.
+/// Milliseconds of a step by part. Rail and soil are computed beside forces and motion: with several threads the parts
+/// add up to more than the step.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Parted {
     pub lists: f64,
@@ -80,9 +81,8 @@ impl Live {
         let after = coupled.parted();
         let mean = |of: fn(&Parted) -> f64| (of(&after) - of(&before)) / all as f64;
         let [lists, forces, walls] = [mean(|p| p.lists), mean(|p| p.forces), mean(|p| p.walls)];
-        let [motion, rail, soil] = [mean(|p| p.motion), mean(|p| p.rail), mean(|p| p.soil)];
-        let whole = times.iter().sum::<f64>() / times.len().max(1) as f64;
-        let inertia = whole - (lists + forces + walls + motion + rail + soil);
+        let [motion, inertia] = [mean(|p| p.motion), mean(|p| p.inertia)];
+        let [rail, soil] = [mean(|p| p.rail), mean(|p| p.soil)];
         let seconds_a_simulated_second = 1e-3 * milliseconds_per_step / coupled.time_step();
         let time_an_axle = match parts.grains.headway {
             Some(distance) => distance / histories.speed,
@@ -121,6 +121,7 @@ impl Coupled {
             }
         };
         let of_beds = self.beds.iter().fold(Parted::default(), of_bed);
-        Parted { rail: ms(self.spent.rail), soil: ms(self.spent.soil), ..of_beds }
+        let Spent { rail, soil, inertia } = self.spent;
+        Parted { rail: ms(rail), soil: ms(soil), inertia: ms(inertia), ..of_beds }
     }
 }

@@ -16,14 +16,12 @@ use super::order::Strips;
 use super::record::Record;
 use super::search::{CellTooSmall, Grids, Pair, Seen};
 use super::tasks::{TASK, Task};
-use super::vector::{dot, norm, sub};
-use super::walls::{Kept, Near, Wall, WallContacts, moved};
+use super::vector::sub;
+use super::walls::{Kept, Near, WallContacts};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Number of steps that lists should last; their reach grows until they do.
-const LIFE: u64 = 400;
 /// Number of steps after which the bed checks whether bodies have left their cells.
 const SETTLE: u64 = 128;
 /// Rounding error of a displacement in single precision \[m\].
@@ -79,29 +77,12 @@ impl<R: Real> Bed<R> {
         if self.lists.outdated {
             return Ok(self.rebuild()?);
         }
-        if self.lists.travel <= self.lists.skin {
+        if self.lists.is_valid() {
             return Ok(());
         }
-        // the bound is used up; the actual approach decides
-        self.lists.travel = self.gone();
-        if self.lists.travel <= self.lists.skin { Ok(()) } else { Ok(self.rebuild()?) }
-    }
-
-    /// The largest possible approach of two bodies, or of a body and a wall, since the lists were made \[m\].
-    fn gone(&self) -> f64 {
-        let pebbles = self.owner.len();
-        let square = (0..pebbles)
-            .into_par_iter()
-            .with_min_len(4096)
-            .map(|p| {
-                let before = self.lists.reference[p].map(f64::from);
-                let now = sub(self.records[p].position(), self.lists.origin[p / BLOCK]);
-                dot(sub(now, before), sub(now, before))
-            })
-            .reduce(|| 0.0, f64::max);
-        let walls =
-            self.walls.iter().zip(&self.lists.walls).map(|(w, p)| moved(w, p, self.lists.extent)).fold(0.0, f64::max);
-        square.sqrt() + square.sqrt().max(walls)
+        // a bound is used up; the actual distances decide
+        self.measure();
+        if self.lists.is_valid() { Ok(()) } else { Ok(self.rebuild()?) }
     }
 
     fn rebuild(&mut self) -> Result<(), CellTooSmall> {
@@ -145,8 +126,9 @@ impl<R: Real> Bed<R> {
     }
 
     pub(super) fn rebuild_with(&mut self, carried: Vec<Carried<R>>, kept: Vec<Kept<R>>) -> Result<(), CellTooSmall> {
-        self.choose_skin();
+        self.choose_rest();
         self.sort();
+        self.spread_reach();
         let histories = Histories::new(carried, self.bodies.len());
         // the memory of the outcomes is used again: new memory costs more than the sums of a step
         let outcomes = std::mem::take(&mut self.contacts.outcomes);
@@ -154,18 +136,17 @@ impl<R: Real> Bed<R> {
         self.incidence = Incidence::default();
         let seen = self.seen();
         let domain = self.domain;
-        let skin = self.lists.skin + SLACK;
         let (pairs, wall_contacts) = {
-            let grids = Grids::new(&domain, &seen, skin);
+            let grids = Grids::new(&domain, &seen, SLACK);
             let about = |pebble: u32| {
                 let (body, part) = self.name(pebble);
                 (body, part, self.bodies[self.owner[pebble as usize] as usize].surface)
             };
-            let near = Near { domain: &domain, seen: &seen, grids: &grids, skin };
+            let near = Near { domain: &domain, seen: &seen, grids: &grids, skin: SLACK, reach: &self.lists.wall_reach };
             // not in parallel with the pairs: memory allocated by another thread for the wall lists slowed the wall
             // forces by a quarter
             let walls = WallContacts::find(&self.walls, near, &self.laws, about, &kept);
-            (grids.pairs(skin)?, walls)
+            (grids.pairs(SLACK)?, walls)
         };
         drop(seen);
         self.wall_contacts = wall_contacts;
@@ -175,37 +156,6 @@ impl<R: Real> Bed<R> {
         self.connect();
         self.remember();
         Ok(())
-    }
-
-    /// Chooses the reach of the lists: large enough for their life, but no larger.
-    fn choose_skin(&mut self) {
-        let largest = self.records[..self.owner.len()].iter().map(Record::radius).fold(0.0, f64::max);
-        let (least, most) = (1e-3 * largest, 0.2 * largest);
-        let build = &mut self.lists;
-        build.skin = match build.fixed_skin {
-            Some(skin) => skin,
-            None if build.count == 0 || build.skin == 0.0 => {
-                // distance that the fastest body covers in the life of a list
-                let speed = 2.0 * self.bodies.iter().map(|b| dot(b.velocity, b.velocity)).fold(0.0, f64::max).sqrt();
-                (speed * self.dt * LIFE as f64).max(8.0 * least).min(most)
-            }
-            None if build.outdated => build.skin,
-            None => {
-                let life = self.steps - build.step;
-                let factor = if life < LIFE {
-                    1.5
-                } else if life > 8 * LIFE {
-                    0.7
-                } else {
-                    1.0
-                };
-                (build.skin * factor).clamp(least, most)
-            }
-        };
-        build.count += 1;
-        build.step = self.steps;
-        build.travel = 0.0;
-        build.outdated = false;
     }
 
     /// Moves bodies that are far outside their cells into the cells of their positions. This rounds their offsets, so
@@ -296,7 +246,8 @@ impl<R: Real> Bed<R> {
         let of = |(pebble, &body): (usize, &u32)| {
             let record = &self.records[pebble];
             let cell = self.bodies[body as usize].cell;
-            Seen { cell, offset: record.position(), radius: record.radius(), body }
+            let radius = record.radius() + f64::from(self.lists.reach[pebble]);
+            Seen { cell, offset: record.position(), radius, body }
         };
         self.owner.par_iter().enumerate().map(of).collect()
     }
@@ -493,25 +444,5 @@ impl<R: Real> Bed<R> {
         let [x, y, z] = steps_of(image).map(|s| (s + 1) as u8);
         let body = &self.bodies[self.owner[other as usize] as usize];
         (16 * x + 4 * y + z, body.rank, other - body.first)
-    }
-
-    /// Stores all positions. Displacements are kept in single precision, relative to an origin that blocks of pebbles
-    /// share.
-    fn remember(&mut self) {
-        let records = &self.records[..self.owner.len()];
-        self.lists.origin = records.chunks(BLOCK).map(|block| block[0].position()).collect();
-        let origin = &self.lists.origin;
-        let from_origin = |(p, r): (usize, &R::Record)| sub(r.position(), origin[p / BLOCK]).map(|x| x as f32);
-        self.lists.reference = records.par_iter().enumerate().map(from_origin).collect();
-        self.lists.walls = self.walls.iter().map(|w| w.pose).collect();
-        self.walls.iter_mut().filter_map(|w| w.sheet.as_mut()).for_each(|sheet| sheet.remember());
-        let far = |wall: &Wall| {
-            let pebbles = records.par_iter().zip(&self.owner);
-            let distance =
-                |(r, &b): (&R::Record, &u32)| norm(wall.to(&self.domain, self.bodies[b as usize].cell, r.position()));
-            pebbles.map(distance).reduce(|| 0.0, f64::max)
-        };
-        let planes = self.walls.iter().filter(|w| w.shape.bounds().is_none());
-        self.lists.extent = planes.map(far).fold(0.0, f64::max) + self.lists.skin;
     }
 }

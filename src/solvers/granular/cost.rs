@@ -10,7 +10,7 @@ use super::lanes::{BLOCK, Real};
 use super::walls::{Entry, Slot};
 
 impl<R: Real> Bed<R> {
-    /// Largest distance of listed pairs \[m\]; with `None` the bed chooses it from the life of its lists. It affects
+    /// Largest distance of listed pairs \[m\]; with `None` the bed chooses it for each body from its motion. It affects
     /// only the speed; the motion is the same, bit by bit.
     pub fn set_skin(&mut self, skin: Option<f64>) {
         self.lists.fixed_skin = skin;
@@ -18,7 +18,7 @@ impl<R: Real> Bed<R> {
         self.unchecked = true;
     }
 
-    /// Present largest distance of listed pairs \[m\].
+    /// Present largest distance of listed pairs of bodies that hardly move \[m\].
     pub fn skin(&self) -> f64 {
         self.lists.skin
     }

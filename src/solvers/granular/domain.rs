@@ -130,16 +130,21 @@ impl Domain {
     /// Vector from `b` to `a` the shortest way \[m\].
     #[inline(always)]
     pub(super) fn between(&self, a: ([i32; 3], [f64; 3]), b: ([i32; 3], [f64; 3])) -> [f64; 3] {
-        [0, 1, 2].map(|axis| {
+        // no closure: it would be called as a function where lanes are in use
+        let mut between = [0.0; 3];
+        for (axis, between) in between.iter_mut().enumerate() {
             let apart = a.1[axis] - b.1[axis];
-            let Some(length) = self.lengths[axis] else { return apart };
-            let mut steps = a.0[axis] - b.0[axis];
-            if let Some(n) = self.counts[axis] {
-                let period = length * f64::from(n);
-                steps -= rounds(f64::from(steps) * length + apart, period) * n as i32;
+            *between = apart;
+            if let Some(length) = self.lengths[axis] {
+                let mut steps = a.0[axis] - b.0[axis];
+                if let Some(n) = self.counts[axis] {
+                    let period = length * f64::from(n);
+                    steps -= rounds(f64::from(steps) * length + apart, period) * n as i32;
+                }
+                *between = apart + length * f64::from(steps);
             }
-            apart + length * f64::from(steps)
-        })
+        }
+        between
     }
 }
 

@@ -125,8 +125,8 @@ pub(super) fn advance_alone<R: Real>(moving: Moving<R>, at: Task, felt: &[Felt],
     R::dispatch(Share { at, moving, forces: Forces::Known(felt), drive })
 }
 
-/// Moves the bodies of `tasks` by one step under the forces of their contacts.
-pub(super) fn advance<R: Real>(moving: Moving<R>, tasks: &[Task], acting: Acting<R>, drive: &Drive) -> Tally {
+/// Moves the bodies of `tasks` by one step under the forces of their contacts; one result per task.
+pub(super) fn advance<R: Real>(moving: Moving<R>, tasks: &[Task], acting: Acting<R>, drive: &Drive) -> Vec<Tally> {
     let Moving { mut bodies, mut records, mut clumps, arms } = moving;
     let mut shares = Vec::with_capacity(tasks.len());
     for (task, next) in tasks.iter().zip(&tasks[1..]) {
@@ -138,8 +138,7 @@ pub(super) fn advance<R: Real>(moving: Moving<R>, tasks: &[Task], acting: Acting
         shares.push(Share { at: *task, moving, forces, drive });
         (bodies, records, clumps) = (rest_bodies, rest_records, rest_clumps);
     }
-    let tallies: Vec<Tally> = shares.into_par_iter().map(R::dispatch).collect();
-    tallies.into_iter().fold(Tally::default(), Tally::and)
+    shares.into_par_iter().map(R::dispatch).collect()
 }
 
 impl<R: Real> Work<R> for Share<'_, R> {

@@ -59,6 +59,7 @@ mod order;
 pub mod packing;
 mod prefetch;
 pub mod probe;
+mod reach;
 mod record;
 mod remove;
 mod replicate;

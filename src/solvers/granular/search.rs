@@ -19,6 +19,7 @@ const LEVELS: usize = 5;
 pub(super) struct Seen {
     pub cell: [i32; 3],
     pub offset: Vec3,
+    /// Radius, and the distance that the pebble may move \[m\].
     pub radius: f64,
     /// Pebbles of one body do not touch each other.
     pub body: u32,

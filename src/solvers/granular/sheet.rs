@@ -78,24 +78,31 @@ impl Sheet {
         [self.lines[0][corner % columns], self.lines[1][corner / columns]]
     }
 
+    // No closures from here to `velocity_at`: they would be called as functions where lanes are in use.
+
     /// The facet over which a position lies, and the share of the position along x and y, from 0 to 1; beyond the
     /// border the nearest facet.
+    #[inline(always)]
     fn facet(&self, place: Vec3) -> ([usize; 2], [f64; 2], [f64; 2]) {
-        let along = |axis: usize| {
+        let (mut cells, mut shares, mut sizes) = ([0; 2], [0.0; 2], [0.0; 2]);
+        for axis in 0..2 {
             let lines = &self.lines[axis];
             let cell = interval(lines, place[axis]);
             let size = lines[cell + 1] - lines[cell];
-            (cell, ((place[axis] - lines[cell]) / size).clamp(0.0, 1.0), size)
-        };
-        let ((i, u, a), (j, v, b)) = (along(0), along(1));
-        ([i, j], [u, v], [a, b])
+            cells[axis] = cell;
+            shares[axis] = ((place[axis] - lines[cell]) / size).clamp(0.0, 1.0);
+            sizes[axis] = size;
+        }
+        (cells, shares, sizes)
     }
 
+    #[inline(always)]
     fn corner_numbers(&self, [i, j]: [usize; 2]) -> [usize; 4] {
         let first = j * self.lines[0].len() + i;
         [first, first + 1, first + self.lines[0].len(), first + self.lines[0].len() + 1]
     }
 
+    #[inline(always)]
     fn weights(&self, place: Vec3) -> Weights {
         let (cell, [u, v], _) = self.facet(place);
         let [a, b, c, d] = self.corner_numbers(cell);
@@ -103,21 +110,31 @@ impl Sheet {
     }
 
     /// Contact point of a sphere of radius `reach` with the facet under its centre, m from the origin of the wall.
+    #[inline(always)]
     pub(super) fn touch(&self, centre: Vec3, reach: f64) -> Option<Touch> {
         let (cell, [u, v], [along, across]) = self.facet(centre);
-        let [a, b, c, d] = self.corner_numbers(cell).map(|corner| self.corners[corner].displacement[2]);
+        let corners = self.corner_numbers(cell);
+        let mut levels = [0.0; 4];
+        for (level, corner) in levels.iter_mut().zip(corners) {
+            *level = self.corners[corner].displacement[2];
+        }
+        let [a, b, c, d] = levels;
         let level = (1.0 - v) * ((1.0 - u) * a + u * b) + v * ((1.0 - u) * c + u * d);
         let slope_x = ((1.0 - v) * (b - a) + v * (d - c)) / along;
         let slope_y = ((1.0 - u) * (c - a) + u * (d - b)) / across;
         let upward = Vector3::new(-slope_x, -slope_y, 1.0).normalize();
         let distance = (centre[2] - level) * upward.z;
-        (distance < reach).then_some(Touch { normal: upward, distance, feature: 0 })
+        if distance < reach { Some(Touch { normal: upward, distance, feature: 0 }) } else { None }
     }
 
     /// Velocity of the floor at a position, m/s.
+    #[inline(always)]
     pub(super) fn velocity_at(&self, place: Vec3) -> Vec3 {
-        let parts = self.weights(place).map(|(corner, weight)| scale(self.corners[corner].velocity, weight));
-        parts.into_iter().fold([0.0; 3], add)
+        let mut velocity = [0.0; 3];
+        for (corner, weight) in self.weights(place) {
+            velocity = add(velocity, scale(self.corners[corner].velocity, weight));
+        }
+        velocity
     }
 
     /// Clears the forces of the step before.

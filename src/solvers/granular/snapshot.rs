@@ -104,7 +104,7 @@ impl<R: Real> Bed<R> {
         let histories = (self.contacts.shear.clone(), self.contacts.damping.clone(), self.wall_contacts.slots.clone());
         let bonds = self.bonds.clone();
         let felt: Vec<_> = self.walls.iter().map(|w| (w.felt, w.moment)).collect();
-        self.sweep(None);
+        self.sweep(None, |_| ());
         let seen = look(self);
         (self.contacts.shear, self.contacts.damping, self.wall_contacts.slots) = histories;
         self.bonds = bonds;

@@ -1,14 +1,18 @@
 //! One time step: forces, motion, walls, and checks.
 
 use super::bed::Bed;
-use super::contacts::{ContactEnergy, Surroundings, shifts};
+use super::body::{Arm, Body, Clump};
+use super::contacts::{ContactEnergy, Contacts, Surroundings, shifts};
 use super::energy::Energy;
 use super::failure::Failure;
 use super::force::Prepared;
+use super::incidence::Incidence;
 use super::integrate::{self, Acting, Drive, Moving, Tally};
 use super::lanes::Real;
+use super::lists::Span;
 use super::motion::{Felt, WallMotion};
 use super::sheet::Sheet;
+use super::tasks::Task;
 use super::timings::Timings;
 use super::walls::{Wall, WallId, approach};
 use std::time::Instant;
@@ -54,6 +58,61 @@ impl Guided<'_> {
     }
 }
 
+/// The bodies, and the contacts between them.
+struct Between<'a, R: Real> {
+    bodies: &'a mut [Body],
+    records: &'a mut [R::Record],
+    clumps: &'a mut [Clump],
+    arms: &'a [Arm],
+    incidence: &'a Incidence,
+    contacts: &'a mut Contacts<R>,
+    tasks: &'a [Task],
+    spans: &'a mut [Span],
+    timings: &'a mut Timings,
+}
+
+impl<R: Real> Between<'_, R> {
+    /// Computes the forces of all contacts, and moves the bodies if `drive` is given. `around` has the laws, the shifts
+    /// of images and the time step; the energy of the contacts is added to `energy`.
+    ///
+    /// Contacts belong to the task of the earlier of their two bodies. So once the contacts of some tasks are computed,
+    /// all contacts of their bodies are computed, and later tasks do not read the old state of these bodies. They are
+    /// moved while all data are in the cache.
+    fn sweep(
+        self,
+        (laws, shifts, dt): (&[Prepared], &[[f64; 3]; 64], f64),
+        drive: Option<&Drive>,
+        mut energy: ContactEnergy,
+    ) -> (ContactEnergy, Tally) {
+        let mut tally = Tally::default();
+        let window = if rayon::current_num_threads() == 1 { ALONE } else { TOGETHER * rayon::current_num_threads() };
+        let last = self.tasks.len().saturating_sub(1);
+        for begin in (0..last).step_by(window) {
+            let tasks = &self.tasks[begin..=(begin + window).min(last)];
+            let start = Instant::now();
+            energy += self.contacts.evaluate(tasks, Surroundings { records: self.records, laws, shifts, dt });
+            let forced = Instant::now();
+            if let Some(drive) = drive {
+                let moving = Moving {
+                    bodies: &mut self.bodies[tasks[0].body as usize..],
+                    records: &mut self.records[tasks[0].pebble as usize..],
+                    clumps: &mut self.clumps[tasks[0].clump as usize..],
+                    arms: self.arms,
+                };
+                let acting = Acting { incidence: self.incidence, outcomes: &self.contacts.outcomes };
+                let tallies = integrate::advance::<R>(moving, tasks, acting, drive);
+                for (span, of_task) in self.spans[begin..].iter_mut().zip(tallies) {
+                    span.travelled += of_task.fastest.0.sqrt() * drive.dt;
+                    tally = tally.and(of_task);
+                }
+            }
+            self.timings.forces += forced - start;
+            self.timings.motion += forced.elapsed();
+        }
+        (energy, tally)
+    }
+}
+
 impl<R: Real> Bed<R> {
     /// Does `count` steps, or stops at the first failure.
     pub fn run(&mut self, count: u64) -> Result<(), Failure> {
@@ -69,10 +128,10 @@ impl<R: Real> Bed<R> {
     }
 
     /// The same as [`Bed::step`], with a guide: `guide` reads the forces on walls at the start of the step and sets the
-    /// motion of the guided walls.
-    pub fn guided_step<E: From<Failure>>(
+    /// motion of the guided walls. It runs beside the contacts between bodies, because it needs none of them.
+    pub fn guided_step<E: From<Failure> + Send>(
         &mut self,
-        guide: impl FnOnce(&mut Guided<'_>) -> Result<(), E>,
+        guide: impl FnOnce(&mut Guided<'_>) -> Result<(), E> + Send,
     ) -> Result<(), E> {
         if self.dt == 0.0 {
             return Err(Failure::NoTimeStep.into());
@@ -87,14 +146,18 @@ impl<R: Real> Bed<R> {
             damping: self.damping,
             watched: self.ledger.watched,
         };
-        let energy = self.sweep(Some(&drive));
+        let (time, dt) = (self.time, self.dt);
+        let guide = |walls: &mut [Wall]| guide(&mut Guided { walls, time, dt });
         if drive.watched {
-            self.ledger.enter(energy, &self.tally, &self.walls, self.dt);
+            // the account needs the motion of the walls before the guide changes it
+            let (energy, ()) = self.sweep(Some(&drive), |_| ());
+            self.ledger.enter(energy, &self.tally, &self.walls, dt);
+            guide(&mut self.walls)?;
+        } else {
+            self.sweep(Some(&drive), guide).1?;
         }
-        guide(&mut Guided { walls: &mut self.walls, time: self.time, dt: self.dt })?;
         self.move_walls();
-        self.lists.travel +=
-            2.0 * self.tally.fastest.0.sqrt() * self.dt + approach(&self.walls, self.dt, self.lists.extent);
+        self.lists.of_walls.travelled += approach(&self.walls, self.dt, self.lists.extent);
         self.fresh = false;
         self.steps += 1;
         self.time += self.dt;
@@ -102,42 +165,30 @@ impl<R: Real> Bed<R> {
         Ok(self.look()?)
     }
 
-    /// Computes every force, and moves the bodies if `drive` is given.
-    ///
-    /// Contacts belong to the task of the earlier of their two bodies. So once the contacts of some tasks are computed,
-    /// all contacts of their bodies are computed, and later tasks do not read the old state of these bodies. They are
-    /// moved while all data are in the cache.
-    pub(super) fn sweep(&mut self, drive: Option<&Drive>) -> ContactEnergy {
+    /// Computes every force, and moves the bodies if `drive` is given. `guide` gets the walls as soon as their forces
+    /// are known, beside the contacts between bodies.
+    pub(super) fn sweep<T: Send>(
+        &mut self,
+        drive: Option<&Drive>,
+        guide: impl FnOnce(&mut [Wall]) -> T + Send,
+    ) -> (ContactEnergy, T) {
         let laws: Vec<Prepared> = self.laws.all().iter().map(|law| Prepared::new(law, self.dt)).collect();
         let shifts = shifts(&self.domain);
         let mut energy = self.wall_forces(&laws, &shifts);
         energy += self.bond_forces(&laws, &shifts);
-        let mut tally = Tally::default();
-        let window = if rayon::current_num_threads() == 1 { ALONE } else { TOGETHER * rayon::current_num_threads() };
-        let last = self.lists.tasks.len().saturating_sub(1);
-        for begin in (0..last).step_by(window) {
-            let tasks = &self.lists.tasks[begin..=(begin + window).min(last)];
-            let start = Instant::now();
-            let around = Surroundings { records: &self.records, laws: &laws, shifts: &shifts, dt: self.dt };
-            energy += self.contacts.evaluate(tasks, around);
-            let forced = Instant::now();
-            if let Some(drive) = drive {
-                let moving = Moving {
-                    bodies: &mut self.bodies[tasks[0].body as usize..],
-                    records: &mut self.records[tasks[0].pebble as usize..],
-                    clumps: &mut self.clumps[tasks[0].clump as usize..],
-                    arms: &self.arms,
-                };
-                let acting = Acting { incidence: &self.incidence, outcomes: &self.contacts.outcomes };
-                tally = tally.and(integrate::advance::<R>(moving, tasks, acting, drive));
-            }
-            self.timings.forces += forced - start;
-            self.timings.motion += forced.elapsed();
-        }
+        let Bed { walls, wall_contacts, bodies, records, clumps, arms, incidence, contacts, lists, timings, .. } = self;
+        let (tasks, spans) = (&lists.tasks[..], &mut lists.spans[..]);
+        let between = Between { bodies, records, clumps, arms, incidence, contacts, tasks, spans, timings };
+        let around = (&laws[..], &shifts, self.dt);
+        let loading = || {
+            wall_contacts.load(walls);
+            guide(walls)
+        };
+        let ((energy, tally), guided) = rayon::join(|| between.sweep(around, drive, energy), loading);
         if drive.is_some() {
             self.tally = tally;
         }
-        energy
+        (energy, guided)
     }
 
     fn wall_forces(&mut self, laws: &[Prepared], shifts: &[[f64; 3]; 64]) -> ContactEnergy {
@@ -148,7 +199,7 @@ impl<R: Real> Bed<R> {
         let around = Surroundings { records: &self.records, laws, shifts, dt: self.dt };
         let from = self.contacts.first.len();
         let outcomes = &mut self.contacts.outcomes[from..from + self.wall_contacts.slots.len()];
-        let (walls, watched) = (&mut self.walls, self.ledger.watched);
+        let (walls, watched) = (&self.walls, self.ledger.watched);
         let energy = self.wall_contacts.evaluate(walls, &self.laws, &self.domain, around, outcomes, watched);
         self.timings.walls += start.elapsed();
         energy

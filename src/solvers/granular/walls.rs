@@ -5,7 +5,7 @@
 
 use super::contacts::{BlockVector, ContactEnergy, Surroundings};
 use super::domain::Domain;
-use super::force::{ContactForces, Meeting, Outcome, Tangent, force_of, outcome};
+use super::force::{ContactForces, Meeting, Outcome, Tangent, outcome};
 use super::lanes::{BLOCK, Lanes, Num, Plain, Real, Row, Vector, Work};
 use super::law::ContactLaws;
 use super::motion::{Felt, Pose, WallMotion};
@@ -144,6 +144,8 @@ pub(super) struct Slot<R> {
     pub normal: Vec3,
     pub shear: [R; 3],
     damping: [R; 3],
+    /// Force on the pebble \[N\].
+    force: [R; 3],
     /// From the origin of the wall to the contact point \[m\].
     point: Vec3,
     pub overlap: f64,
@@ -153,8 +155,10 @@ pub(super) struct Slot<R> {
 
 impl<R: Real> Slot<R> {
     const fn empty(zero: R) -> Self {
-        let (vector, shear) = ([0.0; 3], [zero; 3]);
-        Slot { feature: NONE, normal: vector, shear, damping: shear, point: vector, overlap: 0.0, stiffness: [0.0; 2] }
+        let (vector, none) = ([0.0; 3], [zero; 3]);
+        let (normal, point) = (vector, vector);
+        let (shear, damping, force) = (none, none, none);
+        Slot { feature: NONE, normal, shear, damping, force, point, overlap: 0.0, stiffness: [0.0; 2] }
     }
 
     pub fn touches(&self) -> bool {
@@ -189,6 +193,8 @@ pub(super) struct Near<'a> {
     pub seen: &'a [Seen],
     pub grids: &'a Grids<'a>,
     pub skin: f64,
+    /// Distance that each wall may move \[m\].
+    pub reach: &'a [f64],
 }
 
 impl<R: Real> WallContacts<R> {
@@ -200,10 +206,11 @@ impl<R: Real> WallContacts<R> {
         about: impl Fn(u32) -> (u32, u16, u16) + Sync,
         kept: &[Kept<R>],
     ) -> Self {
-        let Near { domain, seen, skin, .. } = around;
+        let Near { domain, seen, .. } = around;
         let mut all = WallContacts::default();
         let mut near = Vec::new();
         for (number, wall) in walls.iter().enumerate() {
+            let around = Near { skin: around.skin + around.reach[number], ..around };
             let named = wall.candidates(around).into_par_iter().map(|pebble| (about(pebble), pebble));
             let mut candidates: Vec<((u32, u16, u16), u32)> = named.collect();
             candidates.par_sort_unstable();
@@ -211,7 +218,7 @@ impl<R: Real> WallContacts<R> {
             for ((body, part, surface), pebble) in candidates {
                 let me = &seen[pebble as usize];
                 let away = wall.to(domain, me.cell, me.offset);
-                if !wall.near(domain, away, me.radius + skin, &mut near) {
+                if !wall.near(domain, away, me.radius + around.skin, &mut near) {
                     continue;
                 }
                 let room = if matches!(wall.shape, Shape::Mesh(_)) { near.len() as u32 } else { 1 };
@@ -256,10 +263,10 @@ impl<R: Real> WallContacts<R> {
         &self.slots[entry.slots.0 as usize..entry.slots.1 as usize]
     }
 
-    /// Computes every force, and the total forces on each wall. `outcomes` has a place for each slot.
+    /// Computes every force. `outcomes` has a place for each slot.
     pub fn evaluate(
         &mut self,
-        walls: &mut [Wall],
+        walls: &[Wall],
         laws: &ContactLaws,
         domain: &Domain,
         around: Surroundings<R>,
@@ -268,7 +275,7 @@ impl<R: Real> WallContacts<R> {
     ) -> ContactEnergy {
         let shared = Shared { walls, laws, domain, around, facets: &self.facets, watched };
         let mut passes = Vec::with_capacity(self.entries.len().div_ceil(CHUNK));
-        let (mut slots, mut places) = (&mut self.slots[..], &mut *outcomes);
+        let (mut slots, mut places) = (&mut self.slots[..], outcomes);
         for entries in self.entries.chunks(CHUNK) {
             let count = (entries[entries.len() - 1].slots.1 - entries[0].slots.0) as usize;
             let (some_slots, rest_slots) = slots.split_at_mut(count);
@@ -277,30 +284,29 @@ impl<R: Real> WallContacts<R> {
             (slots, places) = (rest_slots, rest_places);
         }
         let energies: Vec<ContactEnergy> = passes.into_par_iter().map(R::dispatch).collect();
-        self.load(walls, outcomes);
         let mut total = ContactEnergy::default();
         energies.into_iter().for_each(|energy| total += energy);
         total
     }
 
     /// Sums the forces on each wall contact by contact, so that pebbles listed without contact have no effect.
-    fn load(&self, walls: &mut [Wall], outcomes: &[Outcome<R>]) {
+    pub fn load(&self, walls: &mut [Wall]) {
         walls.par_iter_mut().with_max_len(1).enumerate().for_each(|(number, wall)| {
             let begin = |number: usize| self.entries.partition_point(|entry| (entry.wall as usize) < number);
             let own = &self.entries[begin(number)..begin(number + 1)];
             let slots = own.first().map_or(0, |e| e.slots.0) as usize..own.last().map_or(0, |e| e.slots.1) as usize;
-            wall.feel(&self.slots[slots.clone()], &outcomes[slots]);
+            wall.feel(&self.slots[slots]);
         });
     }
 }
 
 impl Wall {
     /// Adds the forces of its contacts.
-    fn feel<R: Real>(&mut self, slots: &[Slot<R>], outcomes: &[Outcome<R>]) {
+    fn feel<R: Real>(&mut self, slots: &[Slot<R>]) {
         let (mut felt, mut moment) = (Felt { velocity: self.velocity, ..Felt::default() }, [0.0; 3]);
         self.sheet.iter_mut().for_each(|sheet| sheet.unload());
-        for (slot, outcome) in slots.iter().zip(outcomes).filter(|(s, _)| s.touches()) {
-            let force = force_of(outcome);
+        for slot in slots.iter().filter(|slot| slot.touches()) {
+            let force = slot.force.map(R::to_f64);
             felt.force -= Vector3::from(force);
             felt.stiffness += slot.stiffness[0];
             felt.dashpot += slot.stiffness[1];
@@ -341,7 +347,7 @@ impl Wall {
     }
 
     /// Pebbles that may be within `skin`.
-    fn candidates(&self, Near { domain, seen, grids, skin }: Near) -> Vec<u32> {
+    fn candidates(&self, Near { domain, seen, grids, skin, .. }: Near) -> Vec<u32> {
         let reach = seen.iter().map(|s| s.radius).fold(0.0, f64::max) + skin;
         let mut found = Vec::new();
         let [low, high] = match (&self.shape, self.shape.bounds()) {
@@ -410,6 +416,10 @@ struct Pass<'a, R: Real> {
     places: &'a mut [Outcome<R>],
 }
 
+/// Number of entries between the prefetched pebble and the pebble in work: a processor waits for twenty lines of memory
+/// at a time.
+const AHEAD: usize = 16;
+
 /// One lane, for single contacts.
 type One<R> = Plain<R, 1>;
 
@@ -422,8 +432,11 @@ impl<R: Real> Work<R> for Pass<'_, R> {
         let mut scratch = Scratch::default();
         let mut batches: Vec<Batch<R>> = Vec::new();
         let base = self.entries[0].slots.0;
-        self.ask_for();
-        for entry in self.entries {
+        for ahead in 0..AHEAD {
+            self.ask_for(ahead);
+        }
+        for (number, entry) in self.entries.iter().enumerate() {
+            self.ask_for(number + AHEAD);
             let first = (entry.slots.0 - base) as usize;
             let range = first..(entry.slots.1 - base) as usize;
             let (slots, places) = (&mut self.slots[range.clone()], &mut self.places[range]);
@@ -509,6 +522,7 @@ impl<R: Real> Pass<'_, R> {
             for row in 0..3 {
                 slot.shear[row] = batch.shear[row][lane];
                 slot.damping[row] = damping[row][lane];
+                slot.force[row] = outcomes[lane][row];
             }
             self.places[place] = outcomes[lane];
         }
@@ -517,10 +531,10 @@ impl<R: Real> Pass<'_, R> {
 }
 
 impl<R: Real> Pass<'_, R> {
-    /// Prefetches all pebbles: in the order of their names, they are scattered in memory.
+    /// Prefetches the pebble of an entry: in the order of their names, they are scattered in memory.
     #[inline(always)]
-    fn ask_for(&self) {
-        for entry in self.entries {
+    fn ask_for(&self, entry: usize) {
+        if let Some(entry) = self.entries.get(entry) {
             prefetch(&self.shared.around.records[entry.pebble as usize]);
         }
     }
@@ -579,6 +593,7 @@ impl<R: Real> Shared<'_, R> {
             normal: touch.normal.into(),
             shear,
             damping: [R::default(); 3],
+            force: [R::default(); 3],
             point,
             overlap,
             stiffness: [tangent.normal, tangent.normal_dashpot],
@@ -604,7 +619,8 @@ impl<R: Real> Shared<'_, R> {
             *energy += spent(&meeting, &contact, history.damping, self.around.dt);
         }
         let damping = numbers(contact.damping);
-        let slot = Slot { damping, ..self.slot(entry, record, touch, point, numbers(contact.shear)) };
+        let force = numbers(contact.force);
+        let slot = Slot { damping, force, ..self.slot(entry, record, touch, point, numbers(contact.shear)) };
         let [a, b, c, d, e, f, g, h] = outcome(&meeting, &contact);
         let outcome = [a.value[0], b.value[0], c.value[0], d.value[0], e.value[0], f.value[0], g.value[0], h.value[0]];
         (slot, Row(outcome))
@@ -628,14 +644,19 @@ fn meet<R: Real>(wall: &Wall, record: &R::Record, away: Vec3, touch: &Touch) -> 
     let (velocity, spin) = ([a.to_f64(), b.to_f64(), c.to_f64()], [p.to_f64(), q.to_f64(), r.to_f64()]);
     let own = sub(velocity, scale(cross(spin, normal), arm));
     let (wall_velocity, wall_spin): (Vec3, Vec3) = (wall.velocity.into(), wall.spin.into());
-    let of_sheet = wall.sheet.as_ref().map_or([0.0; 3], |sheet| sheet.velocity_at(point));
+    let of_sheet = match &wall.sheet {
+        Some(sheet) => sheet.velocity_at(point),
+        None => [0.0; 3],
+    };
     let [u, v, w] = sub(own, add(add(wall_velocity, of_sheet), cross(wall_spin, point)));
     let twist = 0.5 * dot(add(spin, wall_spin), normal);
     let [x, y, z] = normal;
     let numbers = [overlap, x, y, z, arm, u, v, w, twist, 0.0, record.radius()];
     let mut met = [record.mass(); 11];
-    for row in (0..11).filter(|row| *row != MASS) {
-        met[row] = R::from_f64(numbers[row]);
+    for row in 0..11 {
+        if row != MASS {
+            met[row] = R::from_f64(numbers[row]);
+        }
     }
     (met, point)
 }

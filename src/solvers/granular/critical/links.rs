@@ -226,11 +226,11 @@ impl<R: Real> Bed<R> {
     /// Makes lists that contain all pairs up to `gap` apart.
     pub(in super::super) fn reach(&mut self, gap: f64) -> Result<(), Failure> {
         self.refresh()?;
-        // lists are valid for their skin less the approach since then
-        if gap + self.lists.travel <= self.lists.skin {
+        // valid lists contain all pairs that touch
+        if gap == 0.0 || gap <= self.lists.listed_up_to() {
             return Ok(());
         }
-        let fixed = self.lists.fixed_skin.replace((gap + self.lists.travel).max(self.lists.skin));
+        let fixed = self.lists.fixed_skin.replace(gap.max(self.lists.skin));
         self.lists.outdated = true;
         let made = self.refresh();
         self.lists.fixed_skin = fixed;
