@@ -135,3 +135,72 @@ impl<R: Real> Bed<R> {
         self.lists.of_walls = Span { travelled: 0.0, left };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::law::{ContactLaw, Dashpot, DashpotMode, FrictionLimit, Linear};
+    use super::super::motion::{Pose, WallMotion};
+    use super::super::shape::Shape;
+    use super::super::{Bed, ContactLaws, Domain, Sphere};
+    use nalgebra::Vector3;
+
+    const RADIUS: f64 = 0.02;
+    const AT_REST: usize = 100;
+
+    /// A row of spheres at rest 1 mm apart, a sphere that flies along the row and towards it, and a plate that comes
+    /// down on the end of the row.
+    fn bed(skin: Option<f64>) -> Bed<f32> {
+        let law = ContactLaw::Linear(Linear {
+            normal_stiffness: 1e6,
+            shear_stiffness: 1e6,
+            friction: 0.5,
+            dashpot: Dashpot::Ratio { normal: 0.1, shear: 0.0 },
+            mode: DashpotMode::default(),
+            limit: FrictionLimit::default(),
+        });
+        let mut bed = Bed::new(Domain::open(), ContactLaws::single(law));
+        let mut put = |centre| bed.add_sphere(&Sphere { centre, radius: RADIUS, density: 2700.0, surface: 0 });
+        (0..AT_REST).for_each(|k| {
+            put([k as f64 * (2.0 * RADIUS + 1e-3), 0.0, 0.0]);
+        });
+        let flies = put([0.02, 0.0, 2.5 * RADIUS]);
+        bed.set_velocity(flies, [1.0, 0.0, -0.2], [0.0; 3]);
+        let down = WallMotion::Velocity { linear: Vector3::new(0.0, 0.0, -0.3), angular: Vector3::zeros() };
+        let place = Vector3::new(AT_REST as f64 * (2.0 * RADIUS + 1e-3), 0.0, 0.05);
+        let plate = Shape::block(Vector3::new(0.05, 0.05, 0.01)).unwrap();
+        bed.add_wall(plate, Pose { position: place, orientation: [1.0, 0.0, 0.0, 0.0] }, 0, down);
+        bed.set_time_step(2e-5);
+        bed.set_skin(skin);
+        bed
+    }
+
+    #[test]
+    fn only_what_moves_is_listed_from_afar() {
+        let (mut own, mut same) = (bed(None), bed(Some(4e-3)));
+        own.step().unwrap();
+        same.step().unwrap();
+        let flies = f64::from(own.lists.reach.iter().copied().fold(0.0, f32::max));
+        let at_rest = f64::from(own.lists.reach.iter().copied().fold(1.0, f32::min));
+        assert!(flies > 1.9e-3 && at_rest < 1e-4, "{flies} and {at_rest} m");
+        assert!(own.lists.wall_reach[0] > 1.9e-3, "the plate reaches {} m", own.lists.wall_reach[0]);
+        // none of the gaps in the row is within reach
+        assert!(own.listed_contacts() < 5, "{} contacts", own.listed_contacts());
+        assert!(same.listed_contacts() >= AT_REST - 1, "{} contacts", same.listed_contacts());
+    }
+
+    #[test]
+    fn nothing_is_met_unlisted() {
+        // 0.1 s: the flying sphere strikes the row, the plate its end, and both wake their neighbours
+        let moved = |skin| {
+            let mut bed = bed(skin);
+            bed.run(5000).unwrap();
+            let all: Vec<_> = bed.states().map(|state| (state.place, state.velocity, state.spin)).collect();
+            (all, bed.lists_made())
+        };
+        let ((own, lists), (often, more)) = (moved(None), moved(Some(1e-5)));
+        assert!(own == often, "a contact was late");
+        let awake = own.iter().filter(|(_, velocity, _)| velocity.iter().any(|v| *v != 0.0)).count();
+        assert!(awake > 4, "{awake} spheres move");
+        assert!(lists * 10 < more, "{lists} lists instead of {more}");
+    }
+}

@@ -160,11 +160,14 @@ impl<R: Real> Bed<R> {
             let whole = acting.matrix(place, count);
             if largest(&whole) < 4.0 * SURELY { 1.0 } else { whole.symmetric_eigenvalues().max() / 4.0 }
         };
-        let factor = |&place: &u32| {
-            let body = &self.bodies[place as usize];
-            needed(place as usize).max(least(body.surface, body.mass))
+        // in the order of memory, then by number: neighbours are in the cache
+        let factor = |place: usize| {
+            let body = &self.bodies[place];
+            needed(place).max(least(body.surface, body.mass))
         };
-        let factors: Vec<f64> = self.index.par_iter().with_min_len(CHUNK).map(factor).collect();
+        let places = (0..self.bodies.len()).into_par_iter().with_min_len(CHUNK);
+        let found: Vec<f64> = places.map(factor).collect();
+        let factors: Vec<f64> = self.index.iter().map(|place| found[*place as usize]).collect();
         Ok(self.weigh_down(&factors, target, target))
     }
 }
