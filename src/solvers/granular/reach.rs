@@ -2,8 +2,8 @@
 //!
 //! Every pebble and every wall has its own reach. A pair is listed if it is closer than both reaches together, so lists
 //! are valid until something has moved by more than its reach. Under a train nine grains of ten move by a tenth of a
-//! millimetre in the life of a list, and a few loose ones fly by several millimetres. Those fly already when the list is
-//! made: their speed tells their reach. One reach for all would list half as many pairs again.
+//! millimetre in the life of a list, and a few loose ones fly by several millimetres. Those fly already when the list
+//! is made, so their speed tells their reach. One reach for all would have to suit the fastest grain.
 
 use super::bed::Bed;
 use super::lanes::{BLOCK, Real};
@@ -77,15 +77,16 @@ impl<R: Real> Bed<R> {
     /// Whether a pebble has moved by more than the reach of pebbles at rest, although it had no other.
     fn is_overtaken(&self) -> bool {
         let Lists { spans, tasks, reach, outdated, .. } = &self.lists;
-        if *outdated {
+        // bodies that were added or removed have no place in the lists
+        if *outdated || reach.len() != self.owner.len() {
             return false;
         }
         let rest = (0.5 * self.lists.skin) as f32;
         let beyond = |pebble: u32| {
             reach[pebble as usize] <= rest && self.gone(pebble as usize) > f64::from(reach[pebble as usize])
         };
-        let used = spans.iter().zip(tasks.windows(2)).filter(|(span, _)| span.is_used_up());
-        used.into_iter().any(|(_, ends)| (ends[0].pebble..ends[1].pebble).any(beyond))
+        let mut used = spans.iter().zip(tasks.windows(2)).filter(|(span, _)| span.is_used_up());
+        used.any(|(_, ends)| (ends[0].pebble..ends[1].pebble).any(beyond))
     }
 
     fn largest_radius(&self) -> f64 {
