@@ -204,13 +204,14 @@ fn text_of_steps(m: &TimedSteps) -> String {
         ("walls", p.walls),
         ("motion", p.motion),
         ("inertia", p.inertia),
-        ("rail, beside", p.rail),
-        ("soil, beside", p.soil),
+        ("rail", p.rail),
+        ("soil", p.soil),
     ] {
         out += &format!("  {label:<18}{ms:>8.3} ms\n");
     }
+    out += "\nrail and soil are computed at the same time as forces and motion\n";
     out += &format!(
-        "\n{:.0} s of computing a simulated second, {:.0} s an axle\n",
+        "{:.0} s of computing a simulated second, {:.0} s an axle\n",
         m.seconds_a_simulated_second, m.seconds_an_axle
     );
     if let Some(energy) = &m.energy {

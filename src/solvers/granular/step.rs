@@ -19,8 +19,8 @@ use std::time::Instant;
 
 /// Number of tasks that one thread computes before it moves their bodies: their data fit into its cache.
 const ALONE: usize = 3;
-/// Number of tasks per thread if several threads work: threads wait for each other twice per window, but what runs
-/// beside the contacts fills these waits.
+/// Number of tasks per thread if several threads work: threads wait for each other twice per window. During
+/// these waits they compute what runs beside the contacts.
 const TOGETHER: usize = 4;
 
 /// Access to the walls between the computation of forces and the motion.

@@ -416,8 +416,8 @@ struct Pass<'a, R: Real> {
     places: &'a mut [Outcome<R>],
 }
 
-/// Number of entries between the prefetched pebble and the pebble in work: a processor waits for twenty lines of memory
-/// at a time.
+/// Number of entries between the prefetched pebble and the pebble in work. A core can wait for about twenty cache lines
+/// at a time; further prefetches stop it.
 const AHEAD: usize = 16;
 
 /// One lane, for single contacts.
