@@ -22,7 +22,7 @@ pub const OF_STRIDE: f64 = 0.9;
 pub const SHARING: Sharing = Sharing::ByNeed;
 
 /// Version: increased when the same parts are built in another way, or stored in another form.
-const METHOD: &str = "track on grains 11";
+const METHOD: &str = "track on grains 12";
 
 /// Data of a track on grains.
 #[derive(Clone, Copy)]

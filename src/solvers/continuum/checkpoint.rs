@@ -54,9 +54,6 @@ impl Soil {
         for (own, memory) in self.chunks.iter_mut().flat_map(Chunk::memories_mut).zip(memories) {
             *own = memory;
         }
-        for ((x, made), u) in self.nodes.position.iter_mut().zip(self.mesh.nodes()).zip(&displacement) {
-            *x = [0, 1, 2].map(|axis| made[axis] + u[axis]);
-        }
         let nodes = &mut self.nodes;
         (nodes.displacement, nodes.velocity, nodes.external, nodes.borne) = (displacement, velocity, external, borne);
         (self.clock, self.ledger) = (clock, ledger);

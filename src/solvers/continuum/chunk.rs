@@ -14,26 +14,40 @@ use pulp::NullaryFnOnce;
 /// Elements of a chunk: their nodes fit into the first-level caches of a core.
 pub const ELEMENTS: usize = 480;
 
+/// Corners of an element, so that both ends of an edge along x follow each other.
+const ALONG: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+
 /// Up to eight elements of one shape.
 #[derive(Debug, Clone)]
 struct Batch {
     shape: u32,
     count: usize,
     elements: [u32; LANES],
-    /// Nodes of the chunk: corner, lane. Lanes without an element repeat the first.
-    corners: [[u16; LANES]; 8],
+    ends: Ends,
     /// Memory of elements with a strength.
     memory: Option<Box<Memory>>,
 }
 
+/// Nodes of the chunk at the corners of the elements of a batch.
+#[derive(Debug, Clone)]
+enum Ends {
+    /// Elements side by side: the eight nodes of a corner follow its first node.
+    Row([u16; 8]),
+    /// Any elements: corner, lane. Lanes without an element repeat the first.
+    Each(Box<[[u16; LANES]; 8]>),
+}
+
+/// Values at the nodes of a chunk, axis by axis.
+type Values = [Vec<f64>; 3];
+
 #[derive(Debug, Clone)]
 pub struct Chunk {
-    /// Nodes of the elements, in the order in which elements name them.
+    /// Nodes of the elements; those of elements side by side follow each other.
     pub nodes: Vec<u32>,
     /// Forces of the elements on these nodes \[N\].
-    pub force: Vec<[f64; 3]>,
+    force: Values,
     batches: Vec<Batch>,
-    place: Vec<[f64; 3]>,
+    place: Values,
 }
 
 /// Energies stored and lost in the elements of a chunk \[J\].
@@ -64,41 +78,36 @@ impl Chunk {
         (known, shapes): (&[Shape], &[u32]),
         local: &mut [u16],
     ) -> Chunk {
+        let mut sorted: Vec<usize> = elements.collect();
+        sorted.sort_by_key(|&element| (shapes[element], element));
+        let alike = sorted.chunk_by(|&a, &b| shapes[a] == shapes[b]);
+        let groups: Vec<&[usize]> = alike.flat_map(|alike| alike.chunks(LANES)).collect();
         let mut nodes: Vec<u32> = Vec::new();
-        for element in elements.clone() {
-            for node in mesh.elements()[element].nodes {
+        for (group, corner) in groups.iter().flat_map(|group| ALONG.map(|corner| (group, corner))) {
+            for node in group.iter().map(|&element| mesh.elements()[element].nodes[corner]) {
                 if local[node as usize] == u16::MAX {
                     local[node as usize] = nodes.len() as u16;
                     nodes.push(node);
                 }
             }
         }
-        let mut sorted: Vec<usize> = elements.collect();
-        sorted.sort_by_key(|&element| (shapes[element], element));
-        let mut batches = Vec::new();
-        for alike in sorted.chunk_by(|&a, &b| shapes[a] == shapes[b]) {
-            for group in alike.chunks(LANES) {
-                let lane = |l: usize| group[l.min(group.len()) % group.len()];
-                let shape = &known[shapes[group[0]] as usize];
-                let memory = shape.yields.as_ref().map(|_| Box::new(Memory::new(shape)));
-                let mut batch = Batch {
-                    memory,
-                    shape: shapes[group[0]],
-                    count: group.len(),
-                    elements: [0; LANES],
-                    corners: [[0; LANES]; 8],
-                };
-                for l in 0..LANES {
-                    batch.elements[l] = lane(l) as u32;
-                    for corner in 0..8 {
-                        batch.corners[corner][l] = local[mesh.elements()[lane(l)].nodes[corner] as usize];
-                    }
-                }
-                batches.push(batch);
-            }
-        }
-        let zeros = vec![[0.0; 3]; nodes.len()];
+        let batch = |group: &&[usize]| {
+            let shape = shapes[group[0]];
+            let lanes: [usize; LANES] = std::array::from_fn(|l| group[l.min(group.len()) % group.len()]);
+            let corner = |corner: usize| lanes.map(|element| local[mesh.elements()[element].nodes[corner] as usize]);
+            let memory = known[shape as usize].yields.as_ref().map(|_| Box::new(Memory::new(&known[shape as usize])));
+            let ends = Ends::new(std::array::from_fn(corner));
+            Batch { shape, count: group.len(), elements: lanes.map(|element| element as u32), ends, memory }
+        };
+        let batches = groups.iter().map(batch).collect();
+        let zeros = [0; 3].map(|_| vec![0.0; nodes.len()]);
         Chunk { force: zeros.clone(), place: zeros, nodes, batches }
+    }
+
+    /// The force of the elements on a node of the chunk \[N\].
+    #[inline(always)]
+    pub fn force(&self, node: usize) -> [f64; 3] {
+        [self.force[0][node], self.force[1][node], self.force[2][node]]
     }
 
     /// Computes the forces of the elements.
@@ -148,10 +157,11 @@ impl NullaryFnOnce for Pull<'_> {
     #[inline(always)]
     fn call(self) -> Held {
         let Chunk { nodes, force, batches, place } = self.chunk;
-        for (place, &node) in place.iter_mut().zip(nodes.iter()) {
-            *place = self.displacement[node as usize];
+        let [x, y, z] = place;
+        for (((x, y), z), &node) in x.iter_mut().zip(y).zip(z).zip(nodes.iter()) {
+            [*x, *y, *z] = self.displacement[node as usize];
         }
-        force.fill([0.0; 3]);
+        force.iter_mut().for_each(|force| force.fill(0.0));
         let mut held = Held::default();
         for batch in batches {
             let u = gather(batch, place);
@@ -182,28 +192,59 @@ impl NullaryFnOnce for Pull<'_> {
     }
 }
 
+impl Ends {
+    fn new(corners: [[u16; LANES]; 8]) -> Ends {
+        let row = |nodes: &[u16; LANES]| nodes.windows(2).all(|pair| pair[1] == pair[0] + 1);
+        if corners.iter().all(row) { Ends::Row(corners.map(|nodes| nodes[0])) } else { Ends::Each(Box::new(corners)) }
+    }
+}
+
 #[inline(always)]
-fn gather(batch: &Batch, place: &[[f64; 3]]) -> Corners {
+fn gather(batch: &Batch, place: &Values) -> Corners {
     let mut u = [[Lanes::ZERO; 8]; 3];
-    for corner in 0..8 {
-        for l in 0..LANES {
-            let [x, y, z] = place[batch.corners[corner][l] as usize];
-            u[0][corner].0[l] = x;
-            u[1][corner].0[l] = y;
-            u[2][corner].0[l] = z;
+    for axis in 0..3 {
+        let place = place[axis].as_slice();
+        match &batch.ends {
+            Ends::Row(first) => {
+                for corner in 0..8 {
+                    u[axis][corner].0.copy_from_slice(&place[first[corner] as usize..][..LANES]);
+                }
+            }
+            Ends::Each(nodes) => {
+                for corner in 0..8 {
+                    for l in 0..LANES {
+                        u[axis][corner].0[l] = place[nodes[corner][l] as usize];
+                    }
+                }
+            }
         }
     }
     u
 }
 
+/// Adds the forces of a batch. Corners of one end of the elements come first: nodes of the two ends of a row overlap,
+/// and a load has to wait for a store just before it.
 #[inline(always)]
-fn scatter(batch: &Batch, f: &Corners, force: &mut [[f64; 3]]) {
-    for corner in 0..8 {
-        for l in 0..batch.count {
-            let sum = &mut force[batch.corners[corner][l] as usize];
-            sum[0] += f[0][corner].0[l];
-            sum[1] += f[1][corner].0[l];
-            sum[2] += f[2][corner].0[l];
+fn scatter(batch: &Batch, f: &Corners, force: &mut Values) {
+    match &batch.ends {
+        Ends::Row(first) => {
+            for corner in [0, 3, 4, 7, 1, 2, 5, 6] {
+                for axis in 0..3 {
+                    let sums = &mut force[axis][first[corner] as usize..][..LANES];
+                    for l in 0..LANES {
+                        sums[l] += f[axis][corner].0[l];
+                    }
+                }
+            }
+        }
+        Ends::Each(nodes) => {
+            for corner in 0..8 {
+                for l in 0..batch.count {
+                    for axis in 0..3 {
+                        force[axis][nodes[corner][l] as usize] += f[axis][corner].0[l];
+                    }
+                }
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The soil divided into hexahedra with eight nodes, each with its material.
 
 use super::error::SoilError;
+use super::lanes::LANES;
 use super::material::Material;
 use super::surface::Surface;
 
@@ -70,8 +71,8 @@ impl Mesh {
 
     /// A box between grid lines \[m\], equally spaced or not. `material_of(i, j, k)` gives the material of the element
     /// between lines i and i + 1 along x, j along y and k along z; `None` leaves the place empty. Elements and nodes
-    /// are numbered along z first, then y, then x, so that the elements and nodes of a slice across the track are
-    /// contiguous.
+    /// are numbered in slabs of [`LANES`] elements along x, and in a slab along x first, then z, then y: elements that
+    /// are computed together lie side by side, and so do their nodes.
     ///
     /// # Errors
     /// Lines that do not increase, no element, invalid materials.
@@ -101,6 +102,7 @@ impl Mesh {
                 }
             }
         }
+        found.sort_by_key(|&([i, j, k], _)| (i / LANES, j, k, i));
         let corners = |[i, j, k]: [usize; 3]| {
             CORNERS.map(|c| {
                 grid_node(i + usize::from(c[0] > 0.0), j + usize::from(c[1] > 0.0), k + usize::from(c[2] > 0.0))
@@ -110,12 +112,12 @@ impl Mesh {
         for (cell, _) in &found {
             corners(*cell).iter().for_each(|&node| number[node] = 0);
         }
-        let mut nodes = Vec::new();
-        for (at, number) in number.iter_mut().enumerate().filter(|(_, number)| **number == 0) {
-            let (i, j, k) = (at / (count[1] * count[2]), at / count[2] % count[1], at % count[2]);
-            *number = nodes.len() as u32;
-            nodes.push([lines[0][i], lines[1][j], lines[2][k]]);
-        }
+        let place = |at: usize| [at / (count[1] * count[2]), at / count[2] % count[1], at % count[2]];
+        let mut used: Vec<usize> = (0..number.len()).filter(|&at| number[at] == 0).collect();
+        // the first plane of nodes of a slab belongs to the slab before
+        used.sort_by_key(|&at| (place(at)[0].div_ceil(LANES), place(at)[1], place(at)[2], place(at)[0]));
+        used.iter().enumerate().for_each(|(node, &at)| number[at] = node as u32);
+        let nodes = used.iter().map(|&at| [0, 1, 2].map(|axis| lines[axis][place(at)[axis]])).collect();
         let element = |&(cell, material): &([usize; 3], usize)| Element {
             nodes: corners(cell).map(|n| number[n]),
             material: material as u32,

@@ -8,7 +8,6 @@ use super::shape::Shape;
 #[derive(Debug, Clone)]
 pub struct Nodes {
     pub displacement: Vec<[f64; 3]>,
-    pub position: Vec<[f64; 3]>,
     pub velocity: Vec<[f64; 3]>,
     pub mass: Vec<f64>,
     /// Forces added by the caller for the next step \[N\].
@@ -56,7 +55,6 @@ impl Nodes {
         }
         Nodes {
             displacement: zeros.clone(),
-            position: mesh.nodes().to_vec(),
             velocity: zeros.clone(),
             mass,
             external: zeros.clone(),
@@ -75,7 +73,7 @@ impl Nodes {
     pub fn pull(&self, chunks: &[Chunk], node: usize) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for &(chunk, local) in &self.slots[self.starts[node] as usize..self.starts[node + 1] as usize] {
-            let force = chunks[chunk as usize].force[local as usize];
+            let force = chunks[chunk as usize].force(local as usize);
             for axis in 0..3 {
                 sum[axis] += force[axis];
             }

@@ -127,7 +127,6 @@ impl Soil {
             for (axis, left) in left.iter().enumerate() {
                 let quiet = nodes.quiet[node][axis] && nodes.driven[node][axis].is_none();
                 nodes.borne[node][axis] = if quiet { -left } else { 0.0 };
-                nodes.position[node][axis] = self.mesh.nodes()[node][axis] + nodes.displacement[node][axis];
             }
         }
         self.nodes.velocity.fill([0.0; 3]);

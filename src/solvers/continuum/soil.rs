@@ -93,8 +93,9 @@ impl Soil {
     }
 
     /// Positions of the nodes \[m\].
-    pub fn positions(&self) -> &[[f64; 3]] {
-        &self.nodes.position
+    pub fn positions(&self) -> Vec<[f64; 3]> {
+        let nodes = self.mesh.nodes().iter().zip(&self.nodes.displacement);
+        nodes.map(|(made, u)| [0, 1, 2].map(|axis| made[axis] + u[axis])).collect()
     }
 
     /// Displacements of the nodes from their initial positions \[m\].
@@ -132,8 +133,6 @@ impl Soil {
     pub fn set_motion(&mut self, node: usize, displacement: [f64; 3], velocity: [f64; 3]) {
         self.nodes.displacement[node] = displacement;
         self.nodes.velocity[node] = velocity;
-        let place = self.mesh.nodes()[node];
-        self.nodes.position[node] = [0, 1, 2].map(|axis| place[axis] + displacement[axis]);
         self.clock.last = 0.0;
     }
 

@@ -48,7 +48,7 @@ impl Soil {
         let held = pull(&mut self.chunks, &self.shapes, &self.nodes.displacement, Answer::Remembered);
         let (gravity, watched) = (self.settings.gravity, self.ledger.watched);
         let kick = Kick { dt, last: self.clock.last, gravity, local, watched };
-        let tally = advance(&mut self.nodes, &self.chunks, self.mesh.nodes(), kick);
+        let tally = advance(&mut self.nodes, &self.chunks, kick);
         self.nodes.external.fill([0.0; 3]);
         if watched {
             self.ledger.enter(held, &tally);
@@ -72,32 +72,26 @@ pub(super) fn pull(chunks: &mut [Chunk], shapes: &[Shape], displacement: &[[f64;
     held.iter().fold(Held::default(), join)
 }
 
-fn advance(nodes: &mut Nodes, chunks: &[Chunk], made: &[[f64; 3]], kick: Kick) -> Tally {
-    // the forces are taken out of the nodes while the threads read the other data
+fn advance(nodes: &mut Nodes, chunks: &[Chunk], kick: Kick) -> Tally {
+    // the motion is taken out of the nodes while the threads read the other data
     let take = std::mem::take::<Vec<[f64; 3]>>;
-    let (mut displacement, mut velocity, mut position) =
-        (take(&mut nodes.displacement), take(&mut nodes.velocity), take(&mut nodes.position));
+    let (mut displacement, mut velocity) = (take(&mut nodes.displacement), take(&mut nodes.velocity));
     let still = &*nodes;
-    let parts =
-        displacement.par_chunks_mut(NODES).zip(velocity.par_chunks_mut(NODES)).zip(position.par_chunks_mut(NODES));
-    let tallies: Vec<Tally> = parts
+    let tallies: Vec<Tally> = displacement
+        .par_chunks_mut(NODES)
+        .zip(velocity.par_chunks_mut(NODES))
         .enumerate()
-        .map(|(part, ((displacement, velocity), position))| {
+        .map(|(part, (displacement, velocity))| {
             let mut tally = Tally::default();
-            for (i, ((u, v), x)) in displacement.iter_mut().zip(velocity).zip(position).enumerate() {
-                let node = part * NODES + i;
-                let after = still.kick(chunks, node, *v, kick, &mut tally);
-                for axis in 0..3 {
-                    u[axis] += after[axis] * kick.dt;
-                    x[axis] = made[node][axis] + u[axis];
-                }
-                *v = after;
-                tally.speed += after[0] * after[0] + after[1] * after[1] + after[2] * after[2];
+            for (i, (u, v)) in displacement.iter_mut().zip(velocity).enumerate() {
+                *v = still.kick(chunks, part * NODES + i, *v, kick, &mut tally);
+                (0..3).for_each(|axis| u[axis] += v[axis] * kick.dt);
+                tally.speed += v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
             }
             tally
         })
         .collect();
-    (nodes.displacement, nodes.velocity, nodes.position) = (displacement, velocity, position);
+    (nodes.displacement, nodes.velocity) = (displacement, velocity);
     tallies.into_iter().fold(Tally::default(), Tally::join)
 }
 
