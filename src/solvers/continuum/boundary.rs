@@ -59,12 +59,9 @@ impl Soil {
             let impedance = self.impedance(element, across, corners);
             for node in corners.map(|corner| corner as usize) {
                 match support {
-                    Support::Fixed => self.nodes.driven[node] = [Some(0.0); 3],
-                    Support::Roller => self.nodes.driven[node][across] = Some(0.0),
-                    Support::Quiet => {
-                        self.nodes.quiet[node][across] = true;
-                        (0..3).for_each(|axis| self.nodes.dashpot[node][axis] += impedance[axis]);
-                    }
+                    Support::Fixed => (0..3).for_each(|axis| self.nodes.drive(node, axis, 0.0)),
+                    Support::Roller => self.nodes.drive(node, across, 0.0),
+                    Support::Quiet => self.nodes.add_quiet(node, across, impedance),
                 }
             }
         }
@@ -77,13 +74,13 @@ impl Soil {
     /// A velocity that is not a finite number.
     pub fn drive(&mut self, node: usize, axis: usize, velocity: f64) -> Result<(), SoilError> {
         number("the velocity of a driven node", velocity)?;
-        self.nodes.driven[node][axis] = Some(velocity);
+        self.nodes.drive(node, axis, velocity);
         Ok(())
     }
 
     /// Releases a node along an axis.
     pub fn release(&mut self, node: usize, axis: usize) {
-        self.nodes.driven[node][axis] = None;
+        self.nodes.held[node][axis] = false;
         self.measured = None;
     }
 

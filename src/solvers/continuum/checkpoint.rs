@@ -27,7 +27,7 @@ impl Soil {
             clock: self.clock,
             displacement: self.nodes.displacement.clone(),
             velocity: self.nodes.velocity.clone(),
-            external: self.nodes.external.clone(),
+            external: self.nodes.externals().to_vec(),
             borne: self.nodes.borne.clone(),
             memories: self.chunks.iter().flat_map(Chunk::memories).cloned().collect(),
             ledger: self.ledger,
@@ -41,10 +41,14 @@ impl Soil {
     pub fn restore(&mut self, state: State) -> Result<(), SoilError> {
         let State { clock, displacement, velocity, external, borne, memories, ledger } = state;
         let expected = self.nodes.mass.len();
-        for nodes in [&displacement, &velocity, &external, &borne] {
+        for nodes in [&displacement, &velocity, &external] {
             if nodes.len() != expected {
                 return Err(SoilError::OtherSoil { what: "nodes", expected, found: nodes.len() });
             }
+        }
+        let (expected, found) = (self.nodes.borne.len(), borne.len());
+        if expected != found {
+            return Err(SoilError::OtherSoil { what: "nodes of quiet faces", expected, found });
         }
         let own = self.chunks.iter().flat_map(Chunk::memories).map(|memory| memory.points.len());
         let (expected, found) = (own.sum(), memories.iter().map(|memory| memory.points.len()).sum());
@@ -55,7 +59,13 @@ impl Soil {
             *own = memory;
         }
         let nodes = &mut self.nodes;
-        (nodes.displacement, nodes.velocity, nodes.external, nodes.borne) = (displacement, velocity, external, borne);
+        (nodes.displacement, nodes.velocity, nodes.borne) = (displacement, velocity, borne);
+        nodes.clear_forces();
+        external
+            .iter()
+            .enumerate()
+            .filter(|(_, force)| **force != [0.0; 3])
+            .for_each(|(node, &force)| nodes.add_force(node, force));
         (self.clock, self.ledger) = (clock, ledger);
         Ok(())
     }

@@ -6,10 +6,11 @@
 
 use super::flow::Memory;
 use super::kernel;
-use super::lanes::{LANES, Lanes};
+use super::lanes::{LANES, Lanes, Vector};
 use super::mesh::Mesh;
-use super::shape::{Corners, Shape};
-use pulp::NullaryFnOnce;
+use super::shape::Shape;
+use super::tensor::Corners;
+use pulp::{Simd, WithSimd};
 
 /// Elements of a chunk: their nodes fit into the first-level caches of a core.
 pub const ELEMENTS: usize = 480;
@@ -38,7 +39,7 @@ enum Ends {
 }
 
 /// Values at the nodes of a chunk, axis by axis.
-type Values = [Vec<f64>; 3];
+pub type Values = [Vec<f64>; 3];
 
 #[derive(Debug, Clone)]
 pub struct Chunk {
@@ -47,7 +48,6 @@ pub struct Chunk {
     /// Forces of the elements on these nodes \[N\].
     force: Values,
     batches: Vec<Batch>,
-    place: Values,
 }
 
 /// Energies stored and lost in the elements of a chunk \[J\].
@@ -101,7 +101,7 @@ impl Chunk {
         };
         let batches = groups.iter().map(batch).collect();
         let zeros = [0; 3].map(|_| vec![0.0; nodes.len()]);
-        Chunk { force: zeros.clone(), place: zeros, nodes, batches }
+        Chunk { force: zeros, nodes, batches }
     }
 
     /// The force of the elements on a node of the chunk \[N\].
@@ -110,9 +110,10 @@ impl Chunk {
         [self.force[0][node], self.force[1][node], self.force[2][node]]
     }
 
-    /// Computes the forces of the elements.
-    pub fn pull(&mut self, shapes: &[Shape], displacement: &[[f64; 3]], answer: Answer) -> Held {
-        pulp::Arch::new().dispatch(Pull { chunk: self, shapes, displacement, answer })
+    /// Computes the forces of the elements. `place` is memory to work with, the same for one chunk after another: it
+    /// stays in the caches.
+    pub fn pull(&mut self, place: &mut Values, shapes: &[Shape], displacement: &[[f64; 3]], answer: Answer) -> Held {
+        pulp::Arch::new().dispatch(Pull { chunk: self, place, shapes, displacement, answer })
     }
 
     /// Memories of the elements, batch by batch.
@@ -146,27 +147,37 @@ pub enum Answer {
 /// them.
 struct Pull<'a> {
     chunk: &'a mut Chunk,
+    place: &'a mut Values,
     shapes: &'a [Shape],
     displacement: &'a [[f64; 3]],
     answer: Answer,
 }
 
-impl NullaryFnOnce for Pull<'_> {
+impl WithSimd for Pull<'_> {
     type Output = Held;
 
     #[inline(always)]
-    fn call(self) -> Held {
-        let Chunk { nodes, force, batches, place } = self.chunk;
-        let [x, y, z] = place;
+    fn with_simd<S: Simd>(self, simd: S) -> Held {
+        let Chunk { nodes, force, batches } = self.chunk;
+        let place = self.place;
+        place.iter_mut().for_each(|place| place.resize(nodes.len(), 0.0));
+        let [x, y, z] = &mut *place;
         for (((x, y), z), &node) in x.iter_mut().zip(y).zip(z).zip(nodes.iter()) {
             [*x, *y, *z] = self.displacement[node as usize];
         }
         force.iter_mut().for_each(|force| force.fill(0.0));
-        let mut held = Held::default();
+        let (mut held, mut elastic) = (Held::default(), [0.0; LANES]);
         for batch in batches {
+            let shape = &self.shapes[batch.shape as usize];
+            let is_elastic = shape.yields.is_none() || self.answer == Answer::Linear;
+            if let (Ends::Row(first), Some(edges), true, None) =
+                (&batch.ends, &shape.edges, is_elastic, &shape.tetrahedra)
+            {
+                pull_row(simd, (shape, edges), first, place, force, &mut elastic);
+                continue;
+            }
             let u = gather(batch, place);
             let mut f: Corners = [[Lanes::ZERO; 8]; 3];
-            let shape = &self.shapes[batch.shape as usize];
             match (&shape.yields, &mut batch.memory) {
                 (Some(yields), Some(memory)) if self.answer != Answer::Linear => {
                     let work = if self.answer == Answer::Remembered {
@@ -188,8 +199,57 @@ impl NullaryFnOnce for Pull<'_> {
             }
             scatter(batch, &f, force);
         }
+        held.strain += elastic.iter().sum::<f64>();
         held
     }
+}
+
+/// Adds the forces of elastic bricks side by side, and their strain energy \[J\].
+#[inline(always)]
+fn pull_row<S: Simd>(
+    simd: S,
+    (shape, edges): (&Shape, &[f64; 3]),
+    first: &[u16; 8],
+    place: &Values,
+    force: &mut Values,
+    energy: &mut [f64; LANES],
+) {
+    for from in (0..LANES).step_by(S::F64_LANES) {
+        let u = [
+            load(simd, from, first, &place[0]),
+            load(simd, from, first, &place[1]),
+            load(simd, from, first, &place[2]),
+        ];
+        let (f, stored) = kernel::elastic_bricks(shape, edges, &u);
+        stored.add_to(&mut energy[from..][..S::F64_LANES]);
+        // corners of one end of the elements first: nodes of the two ends overlap, and a load has to wait for a store
+        // just before it
+        for corner in [0, 3, 4, 7, 1, 2, 5, 6] {
+            for axis in 0..3 {
+                f[axis][corner].add_to(&mut force[axis][first[corner] as usize + from..][..S::F64_LANES]);
+            }
+        }
+    }
+}
+
+/// Values at the corners of elements side by side, from one of them on. No closure: see [`Pull`].
+#[inline(always)]
+fn load<S: Simd>(simd: S, from: usize, first: &[u16; 8], values: &[f64]) -> [Vector<S>; 8] {
+    [
+        load_one(simd, from, first[0], values),
+        load_one(simd, from, first[1], values),
+        load_one(simd, from, first[2], values),
+        load_one(simd, from, first[3], values),
+        load_one(simd, from, first[4], values),
+        load_one(simd, from, first[5], values),
+        load_one(simd, from, first[6], values),
+        load_one(simd, from, first[7], values),
+    ]
+}
+
+#[inline(always)]
+fn load_one<S: Simd>(simd: S, from: usize, first: u16, values: &[f64]) -> Vector<S> {
+    Vector::load(simd, &values[first as usize + from..][..S::F64_LANES])
 }
 
 impl Ends {

@@ -7,9 +7,10 @@
 // loops run over axes of several arrays at once
 #![allow(clippy::needless_range_loop)]
 
-use super::kernel::{Patterns, Tensor, amplitudes, mean_strain, resistance, spread, stress, work};
+use super::kernel::{deformation, resistance, spread, stress, work};
 use super::lanes::{LANES, Lanes};
-use super::shape::{Corners, Shape};
+use super::shape::Shape;
+use super::tensor::{Corners, Patterns, Tensor};
 use super::yields::Yield;
 use serde::{Deserialize, Serialize};
 
@@ -55,14 +56,13 @@ impl Memory {
 
     #[inline(always)]
     fn pull_mean(&mut self, shape: &Shape, yields: &Yield, u: &Corners, force: &mut Corners) -> Work {
-        let strain = mean_strain(shape, u);
+        let (strain, amplitudes) = deformation(shape, u);
         let point = &mut self.points[0];
         let trial = stress(shape, &less(&strain, &point.flow));
         let (corrected, kept) = correct(yields, &trial);
         let before = *point;
         point.stress = corrected;
         flow_where(yields, &strain, point, &kept);
-        let amplitudes = amplitudes(shape, u);
         let elastic = less_patterns(&amplitudes, &self.pattern_flow);
         let mut held = resistance(shape, &elastic);
         let mut lost = lost(&before, point);

@@ -3,33 +3,29 @@
 // loops run over axes of several arrays at once
 #![allow(clippy::needless_range_loop)]
 
-use super::lanes::Lanes;
-use super::shape::{Corners, Shape};
+use super::brick;
+use super::lanes::{Lanes, Number};
+use super::shape::Shape;
+use super::tensor::{COMPONENT, Corners, Patterns, Tensor, symmetric};
 use super::tetra::{TETRAHEDRA, Tetrahedra};
-
-/// Components xx, yy, zz, xy, yz, zx of a symmetric tensor; shear strains are tensor components, half of the shear
-/// angle.
-pub type Tensor = [Lanes; 6];
-
-/// Amplitude or force of each hourglass pattern along each axis.
-pub type Patterns = [[Lanes; 3]; 4];
-
-/// Tensor component of two axes.
-pub const COMPONENT: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
 
 /// Adds the forces of linear elements on their corners, and returns their strain energy \[J\].
 #[inline(always)]
 pub fn elastic(shape: &Shape, u: &Corners, force: &mut Corners) -> Lanes {
-    match &shape.tetrahedra {
-        None => {
-            let strain = mean_strain(shape, u);
-            let amplitudes = amplitudes(shape, u);
+    match (&shape.tetrahedra, &shape.edges) {
+        (None, Some(edges)) => {
+            let (of_bricks, energy) = elastic_bricks(shape, edges, u);
+            add(&of_bricks, force);
+            energy
+        }
+        (None, None) => {
+            let (strain, amplitudes) = deformation(shape, u);
             let stress = stress(shape, &strain);
             let resistance = resistance(shape, &amplitudes);
             spread(shape, &stress, &resistance, force);
             (work(&stress, &strain) + pattern_work(&resistance, &amplitudes)) * (0.5 * shape.volume)
         }
-        Some(tetrahedra) => {
+        (Some(tetrahedra), _) => {
             let mut energy = Lanes::ZERO;
             for overlay in 0..2 {
                 let strains = tetrahedra.strains(u, overlay);
@@ -44,8 +40,27 @@ pub fn elastic(shape: &Shape, u: &Corners, force: &mut Corners) -> Lanes {
     }
 }
 
+/// Forces of linear bricks on their corners, and their strain energy \[J\].
 #[inline(always)]
-pub fn stress(shape: &Shape, strain: &Tensor) -> Tensor {
+pub fn elastic_bricks<N: Number>(shape: &Shape, edges: &[f64; 3], u: &Corners<N>) -> (Corners<N>, N) {
+    let (strain, amplitudes) = brick::deformation(edges, u);
+    let stress = stress(shape, &strain);
+    let resistance = resistance(shape, &amplitudes);
+    let force = brick::spread(edges, shape.volume, &stress, &resistance);
+    (force, (work(&stress, &strain) + pattern_work(&resistance, &amplitudes)) * (0.5 * shape.volume))
+}
+
+#[inline(always)]
+fn add(forces: &Corners, sum: &mut Corners) {
+    for axis in 0..3 {
+        for corner in 0..8 {
+            sum[axis][corner] += forces[axis][corner];
+        }
+    }
+}
+
+#[inline(always)]
+pub fn stress<N: Number>(shape: &Shape, strain: &Tensor<N>) -> Tensor<N> {
     let pressure = (strain[0] + strain[1] + strain[2]) * shape.lambda;
     let double = 2.0 * shape.mu;
     [
@@ -60,25 +75,34 @@ pub fn stress(shape: &Shape, strain: &Tensor) -> Tensor {
 
 /// Double contraction of a stress and a strain.
 #[inline(always)]
-pub fn work(stress: &Tensor, strain: &Tensor) -> Lanes {
+pub fn work<N: Number>(stress: &Tensor<N>, strain: &Tensor<N>) -> N {
     let normal = stress[0] * strain[0] + stress[1] * strain[1] + stress[2] * strain[2];
     let shear = stress[3] * strain[3] + stress[4] * strain[4] + stress[5] * strain[5];
     normal + shear * 2.0
 }
 
 #[inline(always)]
-pub fn pattern_work(resistance: &Patterns, amplitudes: &Patterns) -> Lanes {
-    let mut sum = Lanes::ZERO;
-    for pattern in 0..4 {
-        for axis in 0..3 {
-            sum += resistance[pattern][axis] * amplitudes[pattern][axis];
-        }
-    }
-    sum
+fn pattern_work<N: Number>(resistance: &Patterns<N>, amplitudes: &Patterns<N>) -> N {
+    let bending = product(&resistance[0], &amplitudes[0]) + product(&resistance[1], &amplitudes[1]);
+    bending + (product(&resistance[2], &amplitudes[2]) + product(&resistance[3], &amplitudes[3]))
 }
 
 #[inline(always)]
-pub fn mean_strain(shape: &Shape, u: &Corners) -> Tensor {
+fn product<N: Number>(a: &[N; 3], b: &[N; 3]) -> N {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The mean strain of elements, and the amplitudes of their hourglass patterns.
+#[inline(always)]
+pub fn deformation(shape: &Shape, u: &Corners) -> (Tensor, Patterns) {
+    match &shape.edges {
+        Some(edges) => brick::deformation(edges, u),
+        None => (mean_strain(shape, u), amplitudes(shape, u)),
+    }
+}
+
+#[inline(always)]
+fn mean_strain(shape: &Shape, u: &Corners) -> Tensor {
     let mut slope = [[Lanes::ZERO; 3]; 3];
     for axis in 0..3 {
         for along in 0..3 {
@@ -91,19 +115,7 @@ pub fn mean_strain(shape: &Shape, u: &Corners) -> Tensor {
 }
 
 #[inline(always)]
-fn symmetric(slope: &[[Lanes; 3]; 3]) -> Tensor {
-    [
-        slope[0][0],
-        slope[1][1],
-        slope[2][2],
-        (slope[0][1] + slope[1][0]) * 0.5,
-        (slope[1][2] + slope[2][1]) * 0.5,
-        (slope[2][0] + slope[0][2]) * 0.5,
-    ]
-}
-
-#[inline(always)]
-pub fn amplitudes(shape: &Shape, u: &Corners) -> Patterns {
+fn amplitudes(shape: &Shape, u: &Corners) -> Patterns {
     let mut found = [[Lanes::ZERO; 3]; 4];
     for pattern in 0..4 {
         for axis in 0..3 {
@@ -116,7 +128,7 @@ pub fn amplitudes(shape: &Shape, u: &Corners) -> Patterns {
 }
 
 #[inline(always)]
-pub fn resistance(shape: &Shape, amplitudes: &Patterns) -> Patterns {
+pub fn resistance<N: Number>(shape: &Shape, amplitudes: &Patterns<N>) -> Patterns<N> {
     let mut found = *amplitudes;
     for pattern in 0..4 {
         for axis in 0..3 {
@@ -129,6 +141,9 @@ pub fn resistance(shape: &Shape, amplitudes: &Patterns) -> Patterns {
 /// Adds the corner forces of a mean stress and of the hourglass resistances.
 #[inline(always)]
 pub fn spread(shape: &Shape, stress: &Tensor, resistance: &Patterns, force: &mut Corners) {
+    if let Some(edges) = &shape.edges {
+        return add(&brick::spread(edges, shape.volume, stress, resistance), force);
+    }
     for axis in 0..3 {
         for corner in 0..8 {
             let mut sum = Lanes::ZERO;

@@ -4,8 +4,74 @@
 //! closures: their bodies might be compiled outside it. No fused operations either, so that every machine gives the
 //! same bits.
 
+use pulp::Simd;
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, AddAssign, Mul, Sub};
+
+/// Some numbers side by side.
+pub trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Mul<f64, Output = Self>
+{
+}
+
+impl Number for Lanes {}
+
+/// As many numbers side by side as the machine computes at once. The compiler does not find the vectors in long
+/// formulas of [`Lanes`]; these it cannot miss.
+#[derive(Debug, Clone, Copy)]
+pub struct Vector<S: Simd> {
+    simd: S,
+    numbers: S::f64s,
+}
+
+impl<S: Simd> Number for Vector<S> {}
+
+impl<S: Simd> Vector<S> {
+    /// The first numbers of a slice.
+    #[inline(always)]
+    pub fn load(simd: S, from: &[f64]) -> Vector<S> {
+        Vector { simd, numbers: S::as_simd_f64s(from).0[0] }
+    }
+
+    /// Adds to the first numbers of a slice.
+    #[inline(always)]
+    pub fn add_to(self, sums: &mut [f64]) {
+        let sum = &mut S::as_mut_simd_f64s(sums).0[0];
+        *sum = self.simd.add_f64s(*sum, self.numbers);
+    }
+}
+
+impl<S: Simd> Add for Vector<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Vector { numbers: self.simd.add_f64s(self.numbers, other.numbers), ..self }
+    }
+}
+
+impl<S: Simd> Sub for Vector<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Vector { numbers: self.simd.sub_f64s(self.numbers, other.numbers), ..self }
+    }
+}
+
+impl<S: Simd> Mul for Vector<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Vector { numbers: self.simd.mul_f64s(self.numbers, other.numbers), ..self }
+    }
+}
+
+impl<S: Simd> Mul<f64> for Vector<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: f64) -> Self {
+        Vector { numbers: self.simd.mul_f64s(self.numbers, self.simd.splat_f64s(factor)), ..self }
+    }
+}
 
 /// Elements that are computed together.
 pub const LANES: usize = 8;

@@ -48,7 +48,7 @@ impl Soil {
 
     /// Largest squared frequency \[1/s²\] by Lanczos, from a start vector with a part of every vibration.
     pub(super) fn lanczos(&self, iterations: usize) -> Result<f64, SoilError> {
-        let free = |node: usize, axis: usize| self.nodes.driven[node][axis].is_none();
+        let free = |node: usize, axis: usize| !self.nodes.held[node][axis];
         let mut chunks = self.chunks.clone();
         let root: Vec<f64> = self.nodes.mass.iter().map(|mass| mass.sqrt()).collect();
         let mut now = vec![[0.0; 3]; root.len()];

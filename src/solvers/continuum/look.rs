@@ -2,10 +2,10 @@
 
 use super::chunk::ELEMENTS;
 use super::flow::Memory;
-use super::kernel::{COMPONENT, elastic};
+use super::kernel::elastic;
 use super::lanes::Lanes;
-use super::shape::Corners;
 use super::soil::Soil;
+use super::tensor::{COMPONENT, Corners};
 
 impl Soil {
     /// Mean stress of an element \[Pa\] at the present displacements, tension positive: xx, yy, zz, xy, yz, zx.

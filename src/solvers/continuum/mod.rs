@@ -19,6 +19,7 @@
 //! ```
 
 mod boundary;
+mod brick;
 mod checkpoint;
 mod chunk;
 mod condensed;
@@ -39,6 +40,7 @@ mod soil;
 mod step;
 mod stiffness;
 mod surface;
+mod tensor;
 #[cfg(test)]
 mod tests;
 mod tetra;

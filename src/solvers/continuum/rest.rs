@@ -125,12 +125,14 @@ impl Soil {
         let nodes = &mut self.nodes;
         for (node, left) in left.iter().enumerate() {
             for (axis, left) in left.iter().enumerate() {
-                let quiet = nodes.quiet[node][axis] && nodes.driven[node][axis].is_none();
-                nodes.borne[node][axis] = if quiet { -left } else { 0.0 };
+                let quiet = nodes.quiet[node][axis] && !nodes.held[node][axis];
+                if let Some(borne) = nodes.borne.get_mut(node) {
+                    borne[axis] = if quiet { -left } else { 0.0 };
+                }
             }
         }
         self.nodes.velocity.fill([0.0; 3]);
-        self.nodes.external.fill([0.0; 3]);
+        self.nodes.clear_forces();
         self.clock.last = 0.0;
     }
 
@@ -142,7 +144,7 @@ impl Soil {
         let (mut order, mut unknowns) = (0, vec![[None; 3]; self.nodes.mass.len()]);
         for (node, unknowns) in unknowns.iter_mut().enumerate() {
             for (axis, unknown) in unknowns.iter_mut().enumerate() {
-                if self.nodes.driven[node][axis].is_none() && !self.nodes.quiet[node][axis] {
+                if !self.nodes.held[node][axis] && !self.nodes.quiet[node][axis] {
                     *unknown = Some(order);
                     order += 1;
                 }
@@ -185,7 +187,7 @@ impl Soil {
     /// Weight of each node and forces of the caller on it \[N\].
     fn load(&self) -> Vec<[f64; 3]> {
         let gravity = self.settings.gravity;
-        let loads = self.nodes.mass.iter().zip(&self.nodes.external);
+        let loads = self.nodes.mass.iter().zip(self.nodes.externals());
         loads.map(|(mass, external)| [0, 1, 2].map(|axis| mass * gravity[axis] + external[axis])).collect()
     }
 

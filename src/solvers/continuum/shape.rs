@@ -8,14 +8,11 @@
 //! the energy of bending and twisting of a block with the edges of the element, which a fully integrated element would
 //! have without locking.
 
-use super::lanes::Lanes;
+use super::brick;
 use super::material::Material;
 use super::mesh::CORNERS;
 use super::tetra::{Tetrahedra, cross};
 use super::yields::Yield;
-
-/// Values at the corners of eight elements: axis by axis, corner by corner.
-pub type Corners = [[Lanes; 8]; 3];
 
 /// The formulation of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -33,6 +30,8 @@ pub enum Formulation {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shape {
     pub volume: f64,
+    /// Edges along x, y, z \[m\], if the element is a brick.
+    pub edges: Option<[f64; 3]>,
     /// Mean gradient: axis, corner \[1/m\].
     pub gradient: [[f64; 8]; 3],
     /// Hourglass patterns: pattern, corner.
@@ -54,6 +53,7 @@ impl Shape {
     pub fn new(corners: &[[f64; 3]; 8], material: &Material, formulation: Formulation) -> Result<Shape, f64> {
         let mut shape = Shape {
             volume: 0.0,
+            edges: brick::edges(corners),
             gradient: [[0.0; 8]; 3],
             patterns: [[0.0; 8]; 4],
             moduli: [[0.0; 3]; 4],

@@ -125,8 +125,7 @@ impl Soil {
     /// Adds to the force on a node \[N\] in the next step, or in the next state of rest.
     #[inline]
     pub fn add_force(&mut self, node: usize, force: [f64; 3]) {
-        let sum = &mut self.nodes.external[node];
-        (0..3).for_each(|axis| sum[axis] += force[axis]);
+        self.nodes.add_force(node, force);
     }
 
     /// Sets displacement \[m\] and velocity \[m/s\] of a node; its motion continues from there.

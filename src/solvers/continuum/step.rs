@@ -1,6 +1,6 @@
 //! One step of the leapfrog: `v += F/m dt`, `x += v dt`.
 
-use super::chunk::{Answer, Chunk, Held};
+use super::chunk::{Answer, Chunk, Held, Values};
 use super::energy::Tally;
 use super::error::{SoilError, within};
 use super::nodes::Nodes;
@@ -49,7 +49,7 @@ impl Soil {
         let (gravity, watched) = (self.settings.gravity, self.ledger.watched);
         let kick = Kick { dt, last: self.clock.last, gravity, local, watched };
         let tally = advance(&mut self.nodes, &self.chunks, kick);
-        self.nodes.external.fill([0.0; 3]);
+        self.nodes.clear_forces();
         if watched {
             self.ledger.enter(held, &tally);
         }
@@ -67,7 +67,10 @@ impl Soil {
 
 /// Computes the forces of all elements under displacements.
 pub(super) fn pull(chunks: &mut [Chunk], shapes: &[Shape], displacement: &[[f64; 3]], answer: Answer) -> Held {
-    let held: Vec<Held> = chunks.par_iter_mut().map(|chunk| chunk.pull(shapes, displacement, answer)).collect();
+    let held: Vec<Held> = chunks
+        .par_iter_mut()
+        .map_init(Values::default, |place, chunk| chunk.pull(place, shapes, displacement, answer))
+        .collect();
     let join = |a: Held, b: &Held| Held { strain: a.strain + b.strain, plastic: a.plastic + b.plastic };
     held.iter().fold(Held::default(), join)
 }
@@ -100,20 +103,24 @@ impl Nodes {
     #[inline(always)]
     fn kick(&self, chunks: &[Chunk], node: usize, before: [f64; 3], kick: Kick, tally: &mut Tally) -> [f64; 3] {
         let pull = self.pull(chunks, node);
-        let viscous = self.viscous.get(node).copied().unwrap_or_default();
-        let (external, mass) = (self.external[node], self.mass[node]);
+        let at = |values: &[[f64; 3]]| values.get(node).copied().unwrap_or_default();
+        let (viscous, borne, dashpot) = (at(&self.viscous), at(&self.borne), at(&self.dashpot));
+        let (external, mass, held) = (self.external(node), self.mass[node], self.held[node]);
         let time = 0.5 * (kick.dt + kick.last);
         let mut after = [0.0; 3];
         for axis in 0..3 {
             let weight = mass * kick.gravity[axis];
-            let load = pull[axis] + external[axis] + self.borne[node][axis] + weight;
+            let load = pull[axis] + external[axis] + borne[axis] + weight;
             let total = load + viscous[axis];
-            let damper = self.dashpot[node][axis];
+            let damper = dashpot[axis];
             // against the velocity in the middle of the kick, so that a node that reverses in every step is damped too
-            let local = kick.local * total.abs() * sign(before[axis] + 0.5 * total / mass * time);
+            let local = match kick.local > 0.0 {
+                true => kick.local * total.abs() * sign(before[axis] + 0.5 * total / mass * time),
+                false => 0.0,
+            };
             let free =
                 ((mass - 0.5 * damper * time) * before[axis] + (total - local) * time) / (mass + 0.5 * damper * time);
-            after[axis] = self.driven[node][axis].unwrap_or(free);
+            after[axis] = if held[axis] { self.driven(node)[axis] } else { free };
             if kick.watched {
                 let now = before[axis] + (after[axis] - before[axis]) * kick.last / (kick.dt + kick.last);
                 let (was, comes) = (0.5 * kick.last * before[axis], 0.5 * kick.dt * after[axis]);
@@ -123,8 +130,8 @@ impl Nodes {
                     halves.after += force * comes;
                 };
                 enter(|t| &mut t.gravity, weight);
-                enter(|t| &mut t.external, external[axis] + self.borne[node][axis]);
-                if self.driven[node][axis].is_some() {
+                enter(|t| &mut t.external, external[axis] + borne[axis]);
+                if held[axis] {
                     enter(|t| &mut t.driven, mass * (after[axis] - before[axis]) / time - load);
                 } else {
                     enter(|t| &mut t.damping, local - viscous[axis]);

@@ -2,7 +2,8 @@
 
 use super::kernel;
 use super::lanes::{LANES, Lanes};
-use super::shape::{Corners, Shape};
+use super::shape::Shape;
+use super::tensor::Corners;
 use nalgebra::DMatrix;
 
 /// Degrees of freedom of an element: three axes of the first corner, then of the second, and so on.

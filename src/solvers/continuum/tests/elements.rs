@@ -2,6 +2,11 @@
 
 use super::super::*;
 use super::scenes::*;
+use crate::solvers::continuum::kernel::elastic;
+use crate::solvers::continuum::lanes::Lanes;
+use crate::solvers::continuum::mesh::CORNERS;
+use crate::solvers::continuum::shape::Shape;
+use crate::solvers::continuum::tensor::Corners;
 
 /// Gradient of a linear field of displacement: row by axis of displacement.
 const GRADIENT: [[f64; 3]; 3] = [[1e-3, 2e-4, -3e-4], [-1e-4, -7e-4, 5e-4], [4e-4, 1e-4, 6e-4]];
@@ -124,4 +129,28 @@ fn the_error_is_of_second_order_in_the_size() {
         assert!(fine < 0.01, "{formulation:?} {fine}");
         assert!((coarse / fine).log2() > 1.9, "{formulation:?} {coarse} {fine} {}", (coarse / fine).log2());
     }
+}
+
+/// Sums over the edges of a brick give what its gradient and its patterns give.
+#[test]
+fn a_brick_answers_as_any_other_element() {
+    let corners = CORNERS.map(|[x, y, z]| [0.05 * x + 3.0, 0.04 * y - 1.0, 0.07 * z + 0.2]);
+    let brick = Shape::new(&corners, &SUBGRADE, Formulation::MeanStrain).unwrap();
+    assert!(brick.edges.is_some());
+    let general = Shape { edges: None, ..brick.clone() };
+    let mut numbers = Numbers(5);
+    let u: Corners = std::array::from_fn(|_| std::array::from_fn(|_| Lanes(std::array::from_fn(|_| numbers.next()))));
+    let answer = |shape: &Shape| {
+        let mut force: Corners = [[Lanes::ZERO; 8]; 3];
+        (elastic(shape, &u, &mut force), force)
+    };
+    let ((energy, force), (other_energy, other_force)) = (answer(&brick), answer(&general));
+    let largest = force.iter().flatten().flat_map(|lanes| lanes.0).fold(0.0, |size: f64, f| size.max(f.abs()));
+    for (lanes, other) in force.iter().flatten().zip(other_force.iter().flatten()) {
+        lanes.0.iter().zip(&other.0).for_each(|(f, other)| assert!((f - other).abs() < 1e-14 * largest, "{f} {other}"));
+    }
+    energy.0.iter().zip(&other_energy.0).for_each(|(e, other)| assert!((e / other - 1.0).abs() < 1e-13));
+    let mut moved = corners;
+    moved[2][1] += 1e-9;
+    assert!(Shape::new(&moved, &SUBGRADE, Formulation::MeanStrain).unwrap().edges.is_none());
 }
