@@ -75,6 +75,69 @@ fn a_chart_sets_error_against_time() {
 }
 
 /// Steps that vary are set against even ones, whichever the scene has.
+/// Whole runs against the finest of them. A second call runs nothing and says the same, and a count that differs is
+/// another chart.
+#[test]
+fn a_chart_of_runs_compares_with_the_finest() {
+    let dir = tempfile::tempdir().unwrap();
+    // questions about counts that a shortened run never reaches
+    let asks = "record track_response { at = [-1] sleepers, after = 40 axles, quantities = [rail_seat_load] }\n\
+                expect { that = [max(settlement) < 1 um] }\n";
+    let (file, out) = (scene(dir.path(), &format!("{SMALL}{asks}")), dir.path().join("out"));
+    let arguments =
+        ["chart", file.to_str().unwrap(), "--of", "run", "--out", out.to_str().unwrap(), "--format", "json"];
+    let short = |axles: &str| trackbed(&[&arguments[..], &["--axles", axles]].concat());
+    let output = short("16");
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&answer["axles"], &answer["reference"]), (&16.into(), &"fine".into()));
+    assert_eq!(answer["shortened"], serde_json::json!(["16 axles instead of 40"]));
+
+    let rows = rows(&out.join("chart.csv"));
+    let error = |name: &str| {
+        let row = rows.iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("no {name}"));
+        assert_eq!(row["outcome"], "done");
+        row["settlement_error"].parse::<f64>().unwrap()
+    };
+    // the tighter exchange is nearer, and nearer than the scene's blocks of 8 axles; none has the reference's own bits
+    assert!(0.0 < error("adaptive_0.001_mm") && error("adaptive_0.001_mm") < error("adaptive_0.03_mm"));
+    assert!(error("adaptive_0.001_mm") < error("scene") && error("scene") < 1.0);
+    assert!(rows.iter().any(|row| row["efficient"] == "yes"));
+    let picture = check_picture(&out.join("chart.svg"));
+    assert!(picture.contains("adaptive_0.001_mm"));
+    assert!(fs::read_to_string(out.join("chart.html")).unwrap().contains("solve.update_every = adaptive(0.001 mm)"));
+
+    assert_eq!(short("16").stdout, output.stdout, "a run was computed again");
+    let other = short("24");
+    assert_eq!(other.status.code(), Some(1));
+    assert!(said(&other).contains("E0809"), "{}", said(&other));
+}
+
+/// Every tier and exchange of a scene on grains is planned without running it; equal runs are planned once, and what
+/// exceeds the time is left out.
+#[test]
+fn a_chart_of_grains_is_planned_within_its_time() {
+    let dry = |minutes: &str| {
+        let scene = "scenarios/transition_short.track";
+        let output = trackbed(&["chart", scene, "--of", "run", "--dry-run", "--packings", "3", "--minutes", minutes]);
+        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        (String::from_utf8(output.stdout.clone()).unwrap(), said(&output))
+    };
+    let (whole, told) = dry("600");
+    assert!(told.contains("20 axles instead of 40") && !told.contains("grains from"), "{told}");
+    let line = |name: &str| whole.lines().find(|line| line.trim_start().starts_with(&format!("{name} ")));
+    for name in ["full_monolithic", "scene", "law", "cells", "every_4", "alone", "cells_of_3", "packing_3"] {
+        let line = line(name).unwrap_or_else(|| panic!("no {name}: {whole}"));
+        assert!(!line.contains("left out") && !line.contains("refused"), "{line}");
+    }
+    // the scene is `full` with blocks of 20 axles, its reference is `monolithic`, and its window is shorter than a zone
+    for same in ["full", "monolithic", "every_20", "zone"] {
+        assert!(line(same).is_none(), "{whole}");
+    }
+    let (_, told) = dry("20");
+    assert!(told.contains("grains from"), "{told}");
+}
+
 #[test]
 fn a_scene_of_varying_steps_is_charted_against_even_ones() {
     let dir = tempfile::tempdir().unwrap();
@@ -118,6 +181,8 @@ fn nothing_is_silently_wrong() {
 fn a_study_needs_trains_and_known_counts() {
     let output = trackbed(&["chart", "scenarios/static_check.track"]);
     assert_eq!(output.status.code(), Some(1));
+    assert!(said(&output).contains("E0701"), "{}", said(&output));
+    let output = trackbed(&["chart", "scenarios/static_check.track", "--of", "run", "--dry-run"]);
     assert!(said(&output).contains("E0701"), "{}", said(&output));
 
     let dir = tempfile::tempdir().unwrap();

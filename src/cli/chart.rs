@@ -1,36 +1,93 @@
-//! `trackbed chart`: what a passage costs and how exact it is, over integrators, steps, meshes and beam theories.
+//! `trackbed chart`: what a passage costs and how exact it is, over integrators, steps, meshes and beam theories; or
+//! the same for whole runs by every tier.
 
 use super::scene::SceneArguments;
 use super::subject::{self, Subject};
-use super::{Format, Outcome, progress, terminal};
+use super::{Format, Outcome, chart_runs, progress, terminal};
 use crate::report;
 use crate::trials::chart::{Request, chart};
 use crate::trials::{Chart, Outcome as Ended, Sweep, Variant, chart_csv};
 use crate::units::number;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// Chart the error of a passage against its time
+/// Chart error against time: of a passage, or of whole runs
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   trackbed chart scenarios/transition.track --out chart
-  trackbed chart scenarios/transition.track --after 0 --halvings 3 --out chart")]
+  trackbed chart scenarios/transition.track --after 0 --halvings 3 --out chart
+  trackbed chart scenarios/transition_short.track --of run --minutes 120 --out runs")]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Where `chart.csv` and `chart.svg` go.
+    /// What is computed: one passage with many numerics, or the whole scene by every tier, with other exchanges,
+    /// windows and packings. Runs that are there already are not run again.
+    #[arg(long, value_enum, default_value = "passage")]
+    of: Of,
+    /// Where `chart.csv` and `chart.svg` go, and the runs of `--of run`, which needs it.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Let so many axles settle the track first; the whole traffic where absent.
-    #[arg(long, value_name = "AXLES")]
+    #[arg(long, value_name = "AXLES", conflicts_with_all = ["axles", "minutes", "packings", "dry_run"])]
     after: Option<u64>,
     /// How often the scene's time step is halved.
     #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=8))]
     halvings: u32,
+    /// With `--of run`: axles of each run; 20 on grains and the whole traffic by a law where absent.
+    #[arg(long, value_name = "AXLES", value_parser = clap::value_parser!(u64).range(1..))]
+    axles: Option<u64>,
+    /// With `--of run`: time for all runs, as estimated. The window of the grains is shortened until the reference
+    /// takes half of it, and runs that would exceed it are left out.
+    #[arg(long, value_name = "MINUTES", default_value_t = 60.0)]
+    minutes: f64,
+    /// With `--of run`: packings of the scene's own bed, which show what a difference must be measured against.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(1..=100))]
+    packings: u64,
+    /// With `--of run`: show what would run and how long, and run nothing.
+    #[arg(long)]
+    dry_run: bool,
     #[arg(long, value_enum, default_value = "human")]
     format: Format,
 }
 
+/// What a chart computes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Of {
+    Passage,
+    Run,
+}
+
 pub(super) fn run(arguments: &Arguments) -> Outcome {
+    match arguments.of {
+        Of::Passage => of_passage(arguments),
+        Of::Run => of_run(arguments),
+    }
+}
+
+fn of_run(arguments: &Arguments) -> Outcome {
+    let out = match arguments.out.as_deref() {
+        Some(out) => out,
+        None if arguments.dry_run => Path::new(""),
+        None => {
+            terminal::error("`chart --of run` keeps its runs: say where with `--out DIR`");
+            return Outcome::Usage;
+        }
+    };
+    if !(arguments.minutes > 0.0 && arguments.minutes.is_finite()) {
+        terminal::error("`--minutes` must be a number above 0");
+        return Outcome::Usage;
+    }
+    chart_runs::run(&chart_runs::Asked {
+        scene: &arguments.scene,
+        out,
+        axles: arguments.axles,
+        budget: 60.0 * arguments.minutes,
+        packings: arguments.packings,
+        dry_run: arguments.dry_run,
+        format: arguments.format,
+    })
+}
+
+fn of_passage(arguments: &Arguments) -> Outcome {
     let compiled = match subject::compile(&arguments.scene) {
         Ok(compiled) => compiled,
         Err(outcome) => return outcome,

@@ -5,6 +5,7 @@
 mod bench;
 mod calibrate;
 mod chart;
+mod chart_runs;
 mod check;
 mod cluster;
 mod compare;

@@ -167,6 +167,7 @@ impl Arguments {
             cache: self.cache.clone(),
             force: self.force,
             is_worker: false,
+            is_part: false,
         }
     }
 

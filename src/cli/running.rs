@@ -35,6 +35,8 @@ pub(super) struct Request {
     pub force: bool,
     /// Whether this is `trackbed work` for a run of another process.
     pub is_worker: bool,
+    /// Whether the command goes on with other runs and says itself what came out.
+    pub is_part: bool,
 }
 
 impl Request {
@@ -47,6 +49,7 @@ impl Request {
             cache: packings.cache.clone(),
             force: packings.force,
             is_worker: true,
+            is_part: false,
         }
     }
 
@@ -140,7 +143,9 @@ pub(super) fn compute(directory: Directory, running: &Running<'_>) -> Result<Run
     let mut files = files(&run, view.as_ref(), &out).map_err(|error| refused(&error))?;
     files.extend(running.resolved.iter().map(|text| (results::RESOLVED.to_owned(), text.clone().into_bytes())));
     put_in_place(directory, &files, &timed).map_err(|error| refused(&error))?;
-    summary(&run, &out.join(report::PAGE), timed.solve);
+    if !running.request.is_part {
+        summary(&run, &out.join(report::PAGE), timed.solve);
+    }
     warn(&run, running);
     Ok(run)
 }
@@ -184,7 +189,12 @@ fn execute(directory: &Directory, graph: &Graph, running: &Running<'_>) -> Resul
         (Ok(Ending::Stopped), None) => return Err(stopped(request, recorder.has_kept())),
         (Err(error), _) => return Err(running.stop(execute::diagnose(&error, graph, &compiled.origins))),
     }
-    let timed = Timed { solve: recorder.seconds(), parts: recorder.parts(), after: Instant::now() };
+    let timed = Timed {
+        solve: recorder.seconds(),
+        build: recorder.build_seconds(),
+        parts: recorder.parts(),
+        after: Instant::now(),
+    };
     let run = Run::gather(&recorder, scenario, graph, running.source());
     let bed = recorder.last_bed.take();
     let view = bed.map(|mut bed| BedTestsView::new(run.clone(), &mut bed)).transpose();
@@ -195,7 +205,7 @@ fn execute(directory: &Directory, graph: &Graph, running: &Running<'_>) -> Resul
 /// The run of its parts.
 fn joined(parts: Parts, running: &Running<'_>) -> Computed {
     let Running { scenario, graph, .. } = running;
-    let timed = Timed { solve: parts.seconds, parts: parts.starts, after: Instant::now() };
+    let timed = Timed { solve: parts.seconds, build: 0.0, parts: parts.starts, after: Instant::now() };
     let mut recorder = RunRecorder::new(scenario, graph);
     if let Some(tests) = &mut recorder.tables.tests {
         tests.tests = parts.tests();
@@ -276,6 +286,8 @@ fn files(run: &Run, view: Option<&BedTestsView>, out: &Path) -> Result<Vec<Named
 struct Timed {
     /// Seconds of all its parts.
     solve: f64,
+    /// Seconds of these until the first train ran on grains.
+    build: f64,
     parts: u64,
     /// When it was computed: files and pages follow.
     after: Instant,
@@ -288,6 +300,7 @@ fn put_in_place(mut directory: Directory, files: &[NamedBytes], timed: &Timed) -
     }
     let timings = BTreeMap::from([
         ("solve_s".to_string(), timed.solve),
+        ("build_s".to_string(), timed.build),
         ("total_s".to_string(), timed.solve + timed.after.elapsed().as_secs_f64()),
         ("parts".to_string(), timed.parts as f64),
         ("threads".to_string(), rayon::current_num_threads() as f64),

@@ -25,7 +25,7 @@ pub use numbers::{Number, NumberRow, is_named, numbers};
 pub use points::{PointRow, points};
 pub use sample::{Difference, Sample};
 pub use scenes::{Edit, edits};
-pub use seats::{Column, SeatDifference, common_count, seat_differences};
+pub use seats::{Column, SeatDifference, seat_differences};
 pub use study_table::{StudyPoint, StudyTable};
 pub use subject::{Content, Subject};
 

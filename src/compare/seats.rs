@@ -2,7 +2,7 @@
 //! recorded.
 
 use super::Subject;
-use crate::results::{Run, SleeperRow};
+use crate::results::{Run, SleeperRow, common_count};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
@@ -67,13 +67,6 @@ pub struct SeatDifference {
     /// Root of the mean square of the differences over the seats of both.
     pub rms: f64,
     pub seats: usize,
-}
-
-/// The last axle count that all runs have recorded; `None` if they share none.
-pub fn common_count<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Option<u64> {
-    let counts = |run: &Run| run.sleepers.iter().map(|row| row.axles).collect::<BTreeSet<u64>>();
-    let shared = runs.into_iter().map(counts).reduce(|all, own| all.intersection(&own).copied().collect())?;
-    shared.into_iter().next_back()
 }
 
 /// A row for each further run and column. Seats are the same where they lie at one chainage; both must be passed by

@@ -69,6 +69,7 @@ pub use crate::store::{Beds, FoundBed, bed_hash, write_atomically};
 
 use crate::scenario::{Loading, Scenario};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// Everything in a run's directory, as data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -91,6 +92,13 @@ pub struct Run {
     pub tests: Option<BedTests>,
     /// The same on further packings of the grains under the track; empty if there is one.
     pub packings: Vec<Packing>,
+}
+
+/// The last axle count that all runs have recorded; `None` if they share none.
+pub fn common_count<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Option<u64> {
+    let counts = |run: &Run| run.sleepers.iter().map(|row| row.axles).collect::<BTreeSet<u64>>();
+    let shared = runs.into_iter().map(counts).reduce(|all, own| all.intersection(&own).copied().collect())?;
+    shared.into_iter().next_back()
 }
 
 impl Run {

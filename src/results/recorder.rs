@@ -10,7 +10,7 @@ use super::{
 };
 use crate::execute::{Between, BlockMeasures, Checkpoint, Event, Listener};
 use crate::graph::{Block, Blocks, Graph, Record, Runner, SupportNode, TrackNode};
-use crate::nodes::{self, PassageOutcome, SeatOutcome, Tested, Unloaded, VolumeSample};
+use crate::nodes::{self, PassageOutcome, SeatOutcome, Stage, Tested, Unloaded, VolumeSample};
 use crate::scenario::response::Response;
 use crate::scenario::{Loading, Scenario, Track, Traffic};
 use crate::solvers::granular::Bed;
@@ -81,6 +81,9 @@ struct Spent {
     seconds: f64,
     /// A run that is interrupted and resumed once has two.
     parts: u64,
+    /// Seconds until the first train ran on grains; `None` before, and without grains.
+    #[serde(default)]
+    built: Option<f64>,
 }
 
 /// Makes the tables of a run.
@@ -182,6 +185,11 @@ impl<'a> RunRecorder<'a> {
         self.spent.seconds + self.begun.elapsed().as_secs_f64()
     }
 
+    /// Seconds until the first train ran on grains; 0 without grains.
+    pub fn build_seconds(&self) -> f64 {
+        self.spent.built.unwrap_or(0.0)
+    }
+
     /// Parts of the run, this one among them: each `--resume` begins another.
     pub fn parts(&self) -> u64 {
         self.spent.parts + 1
@@ -237,7 +245,7 @@ impl<'a> RunRecorder<'a> {
         let checkpoint = between.checkpoint().map_err(|cause| ResultsError::unwritable(directory.path(), cause))?;
         let clock = checkpoint.clock;
         let (tables, histories, unloaded) = (self.tables.clone(), self.kept.clone(), self.unloaded.clone());
-        let spent = Spent { seconds: self.seconds(), parts: self.parts() };
+        let spent = Spent { seconds: self.seconds(), parts: self.parts(), built: self.spent.built };
         let beds = self.beds.save(directory)?;
         let saved = Saved { checkpoint, tables, histories, unloaded, beds: beds.clone(), spent };
         let bytes = directory.write_checkpoint(&saved)?;
@@ -448,6 +456,9 @@ impl Listener for RunRecorder<'_> {
                 }
             }
             Event::Packing(progress) => {
+                if self.spent.built.is_none() && progress.stage == Stage::Passage.to_string() {
+                    self.spent.built = Some(self.seconds());
+                }
                 self.stage = Some((progress.stage.clone(), progress.share));
                 // a bed on its way cannot be kept
                 if self.is_interrupted() {

@@ -2,11 +2,12 @@
 //! axles.
 
 use super::coloured;
-use crate::compare::{Comparison, common_count};
+use crate::compare::Comparison;
 use crate::report::Figure;
 use crate::report::along::{ballasted_names, figure, track_chart};
 use crate::report::curves::{Axis, Chart, Mark, Series};
 use crate::report::number::{shown_unit, whole};
+use crate::results::common_count;
 use crate::results::{RailRow, Run, SleeperRow};
 
 /// The quantity of each seat that a figure shows.

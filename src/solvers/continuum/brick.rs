@@ -76,25 +76,26 @@ fn parts<N: Number>(u: &[N; 8]) -> Parts<N> {
     [top_x + low_x, top_y + low_y, top - low, top_y - low_y, top_x - low_x, top_xy + low_xy, top_xy - low_xy]
 }
 
-/// The sum of all parts with their signs at each corner.
+/// The sum of all parts with their signs at each corner: first along ζ, for the lower and the upper face, then along η,
+/// then along ξ.
 #[inline(always)]
 fn corners<N: Number>(&[x, y, z, yz, zx, xy, xyz]: &Parts<N>) -> [N; 8] {
     let (low_x, top_x) = (x - zx, x + zx);
     let (low_y, top_y) = (y - yz, y + yz);
     let (low_xy, top_xy) = (xy - xyz, xy + xyz);
-    // values at the middles of the edges along ξ, and half of the way to their ends; below against the sign of z
-    let (right_low, left_low) = (z + low_y, low_y - z);
-    let (right_top, left_top) = (z - top_y, z + top_y);
-    let (m0, m1) = (low_x - low_xy, low_x + low_xy);
-    let (n0, n1) = (top_x - top_xy, top_x + top_xy);
+    // the part along ζ is negative on the lower face: the near edge has the opposite sign
+    let (low_near, low_far) = (z + low_y, low_y - z);
+    let (top_near, top_far) = (z - top_y, z + top_y);
+    let (low_near_x, low_far_x) = (low_x - low_xy, low_x + low_xy);
+    let (top_near_x, top_far_x) = (top_x - top_xy, top_x + top_xy);
     [
-        (right_low + m0) * -1.0,
-        m0 - right_low,
-        left_low + m1,
-        left_low - m1,
-        right_top - n0,
-        right_top + n0,
-        left_top + n1,
-        left_top - n1,
+        (low_near + low_near_x) * -1.0,
+        low_near_x - low_near,
+        low_far + low_far_x,
+        low_far - low_far_x,
+        top_near - top_near_x,
+        top_near + top_near_x,
+        top_far + top_far_x,
+        top_far - top_far_x,
     ]
 }

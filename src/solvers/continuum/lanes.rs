@@ -16,8 +16,8 @@ pub trait Number:
 
 impl Number for Lanes {}
 
-/// As many numbers side by side as the machine computes at once. The compiler does not find the vectors in long
-/// formulas of [`Lanes`]; these it cannot miss.
+/// The numbers that the machine computes at once. In long formulas of [`Lanes`] the compiler does not find the vectors;
+/// these it cannot miss.
 #[derive(Debug, Clone, Copy)]
 pub struct Vector<S: Simd> {
     simd: S,

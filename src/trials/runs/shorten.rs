@@ -1,0 +1,109 @@
+//! The scene of a chart of runs: the scene at hand without records, expectations and studies, and shortened where its
+//! reference would take too long.
+
+use super::variants::{RunVariant, edit, is_on_grains, reference};
+use crate::check::{Modules, Override};
+use crate::compile::{Compiled, compile};
+use crate::diag::Sources;
+use crate::scenario::{Loading, Scenario};
+use crate::syntax::parse;
+use crate::syntax::tree::Item;
+use crate::units::number;
+
+/// Declarations that ask for more output and change no result.
+const DROPPED: [&str; 3] = ["record", "expect", "study"];
+/// Axles of a shortened run on grains.
+pub const SHORT: u64 = 20;
+/// The reference may take this share of the time for the whole chart.
+const SHARE: f64 = 0.5;
+/// Windows of a shortened run, from the soft side of a transition to its stiff side, in bays.
+const WINDOWS: [[u32; 2]; 4] = [[16, 2], [12, 2], [9, 2], [5, 2]];
+
+/// A scene as a chart runs it.
+pub struct RunSubject<'a> {
+    pub name: &'a str,
+    pub text: String,
+    pub modules: &'a (dyn Modules + Sync),
+    /// Edits of the command line, then those that shorten the scene.
+    pub set: Vec<Override>,
+    /// What was shortened and why, as sentences.
+    pub shortened: Vec<String>,
+}
+
+impl RunSubject<'_> {
+    /// The scene with the edits of a variant.
+    pub fn compile(&self, variant: &RunVariant) -> Compiled {
+        compile(self.name, &self.text, self.modules, &[self.set.as_slice(), &variant.edits].concat())
+    }
+
+    /// Time of a variant on two cores, s; `None` if it cannot run.
+    fn seconds(&self, variant: &RunVariant) -> Option<f64> {
+        self.compile(variant).to_run().runnable().map(|graph| graph.cost.seconds_on_two_cores)
+    }
+}
+
+/// The scene of a chart, shortened until its reference is expected to take half of `budget` (s) at most. `axles`
+/// replaces the axles of the scene where it is given.
+pub fn subject<'a>(
+    (name, text): (&'a str, &str),
+    modules: &'a (dyn Modules + Sync),
+    set: &[Override],
+    scenario: &Scenario,
+    (axles, budget): (Option<u64>, f64),
+) -> RunSubject<'a> {
+    let text = without_questions(name, text);
+    let mut subject = RunSubject { name, text, modules, set: set.to_vec(), shortened: Vec::new() };
+    let on_grains = is_on_grains(scenario);
+    let total = axles_of(scenario);
+    if let Some(wanted) = axles.or(on_grains.then_some(SHORT)).filter(|wanted| *wanted < total) {
+        subject.set.push(edit("traffic.total", &format!("{wanted} axles")));
+        subject.shortened.push(format!("{wanted} axles instead of {total}"));
+    }
+    let fits = |subject: &RunSubject<'_>| {
+        reference(scenario).iter().any(|variant| subject.seconds(variant).is_some_and(|s| s <= SHARE * budget))
+    };
+    if !on_grains || fits(&subject) {
+        return subject;
+    }
+    let (whole, spacing) = (subject.set.len(), spacing(scenario));
+    for [soft, stiff] in WINDOWS {
+        let window = format!("-{} .. {} m", number(f64::from(soft) * spacing), number(f64::from(stiff) * spacing));
+        subject.set.truncate(whole);
+        subject.set.push(edit("solve.window", &window));
+        if fits(&subject) {
+            subject.shortened.push(format!("grains from {window} around the transition"));
+            return subject;
+        }
+    }
+    subject.shortened.push("the smallest window, although its reference takes more than half of the time".to_owned());
+    subject
+}
+
+fn axles_of(scenario: &Scenario) -> u64 {
+    match &scenario.loading {
+        Some(Loading::Traffic(traffic)) => *traffic.total,
+        _ => 0,
+    }
+}
+
+/// The usual distance of two seats, m.
+fn spacing(scenario: &Scenario) -> f64 {
+    let mut all: Vec<f64> = scenario.track.seats.windows(2).map(|pair| pair[1].x - pair[0].x).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(0.6)
+}
+
+/// The text with blanks in place of the declarations that only ask for output: other lines keep their numbers.
+fn without_questions(name: &str, text: &str) -> String {
+    let file = Sources::default().add(name, text, false);
+    let mut bytes = text.as_bytes().to_vec();
+    for item in parse(file, text).0.items {
+        let Item::Declaration(declaration) = item else { continue };
+        if DROPPED.contains(&declaration.kind.text.as_str()) {
+            let blank = bytes[declaration.span.start as usize..declaration.span.end as usize].iter_mut();
+            blank.filter(|byte| **byte != b'\n').for_each(|byte| *byte = b' ');
+        }
+    }
+    // whole declarations are replaced, so the rest is text as before
+    String::from_utf8(bytes).unwrap_or_else(|_| text.to_owned())
+}
