@@ -16,7 +16,7 @@ use crate::trials::runs::{
     Ended, RunChart, RunErrors, RunRow, RunSubject, RunVariant, Took, reference, runs_csv, subject, variants,
 };
 use crate::units::number;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What a chart of runs is asked for.
 pub(super) struct Asked<'a> {
@@ -51,7 +51,7 @@ impl Planned {
         self.compiled.runnable().unwrap_or_else(|| unreachable!("planned without a plan"))
     }
 
-    fn seconds(&self) -> f64 {
+    fn expected_seconds(&self) -> f64 {
         self.graph().cost.seconds_on_two_cores
     }
 
@@ -83,11 +83,17 @@ pub(super) fn run(asked: &Asked<'_>) -> Outcome {
     let text = compiled.sources.iter().next().map_or("", |(_, source)| source.text.as_str());
     let bounds = (asked.axles, asked.budget);
     let subject = subject((&name, text), &modules, &asked.scene.set, scenario, bounds);
-    let finest = reference(scenario).into_iter().filter_map(|variant| Planned::new(&subject, variant).ok());
-    let mut finest: Vec<Planned> = finest.collect();
-    let within = finest.iter().position(|planned| planned.seconds() <= 0.5 * asked.budget);
-    let Some(finest) = (!finest.is_empty()).then(|| finest.swap_remove(within.unwrap_or(0))) else {
-        terminal::error("no reference of this scene can run");
+    let (mut finest, mut refused) = (Vec::new(), None);
+    for planned in reference(scenario).into_iter().map(|variant| Planned::new(&subject, variant)) {
+        match planned {
+            Ok(planned) => finest.push(planned),
+            Err(reason) => refused = refused.or(Some(reason)),
+        }
+    }
+    // the finest within half of the time, else the fastest
+    let within = finest.iter().position(|planned| planned.expected_seconds() <= 0.5 * asked.budget);
+    let Some(finest) = (!finest.is_empty()).then(|| finest.swap_remove(within.unwrap_or(finest.len() - 1))) else {
+        terminal::error(&format!("no reference of this scene can run: {}", refused.unwrap_or_default()));
         return Outcome::Failed;
     };
     let (rows, chosen) = chosen(&subject, &finest, variants(scenario, asked.packings), asked.budget);
@@ -116,10 +122,10 @@ fn chosen(subject: &RunSubject<'_>, finest: &Planned, variants: Vec<RunVariant>,
             rows.push((variant, planned));
         }
     }
-    let seconds = |row: &Row| row.1.as_ref().map_or(f64::INFINITY, Planned::seconds);
+    let seconds = |row: &Row| row.1.as_ref().map_or(f64::INFINITY, Planned::expected_seconds);
     let mut order: Vec<usize> = (0..rows.len()).collect();
     order.sort_by(|a, b| seconds(&rows[*a]).total_cmp(&seconds(&rows[*b])));
-    let (mut sum, mut chosen) = (finest.seconds(), vec![false; rows.len()]);
+    let (mut sum, mut chosen) = (finest.expected_seconds(), vec![false; rows.len()]);
     for index in order {
         sum += seconds(&rows[index]);
         chosen[index] = sum <= budget;
@@ -133,7 +139,7 @@ fn announce(subject: &RunSubject<'_>, finest: &Planned, rows: &[Row], chosen: &[
     }
     let of_rows = rows.iter().zip(chosen).filter(|(_, chosen)| **chosen);
     let planned: Vec<&Planned> = of_rows.filter_map(|((_, planned), _)| planned.as_ref().ok()).collect();
-    let seconds = finest.seconds() + planned.iter().map(|planned| planned.seconds()).sum::<f64>();
+    let seconds = finest.expected_seconds() + planned.iter().map(|planned| planned.expected_seconds()).sum::<f64>();
     terminal::note(&format!(
         "{} runs and the reference `{}`, about {}\n",
         planned.len(),
@@ -150,13 +156,13 @@ fn intended(finest: &Planned, rows: &[Row], chosen: &[bool]) -> Vec<Vec<String>>
     };
     let line = |variant: &RunVariant, what: String| vec![variant.name.clone(), what, edits(variant)];
     let mut table = vec![["run", "about", "edits"].map(str::to_owned).to_vec()];
-    table.push(line(&finest.variant, format!("{}, the reference", duration(finest.seconds()))));
+    table.push(line(&finest.variant, format!("{}, the reference", duration(finest.expected_seconds()))));
     for ((variant, planned), chosen) in rows.iter().zip(chosen) {
         table.push(line(
             variant,
             match planned {
-                Ok(planned) if *chosen => duration(planned.seconds()),
-                Ok(planned) => format!("{}, left out", duration(planned.seconds())),
+                Ok(planned) if *chosen => duration(planned.expected_seconds()),
+                Ok(planned) => format!("{}, left out", duration(planned.expected_seconds())),
                 Err(reason) => format!("refused: {reason}"),
             },
         ));
@@ -178,7 +184,7 @@ fn computed(
     };
     let mut ran = Vec::new();
     for ((variant, planned), chosen) in rows.into_iter().zip(chosen) {
-        let estimated = planned.as_ref().ok().map(Planned::seconds);
+        let estimated = planned.as_ref().ok().map(Planned::expected_seconds);
         let result = match planned {
             Err(reason) => Err(Ended::Refused { reason }),
             Ok(_) if !chosen => Err(Ended::LeftOut),
@@ -210,7 +216,7 @@ fn run_one(asked: &Asked<'_>, subject: &RunSubject<'_>, planned: &Planned) -> Re
     let directory = Directory::open(&out, running.work.clone(), Mode::Resume);
     let directory = directory.map_err(|error| running.stop(stored::diagnostic(&error)))?;
     if directory.finished().is_none() {
-        terminal::note(&format!("{}: about {}\n", variant.name, duration(planned.seconds())));
+        terminal::note(&format!("{}: about {}\n", variant.name, duration(planned.expected_seconds())));
         match running::compute(directory, &running) {
             Ok(_) => {}
             Err(outcome) if interrupt::asked().load(std::sync::atomic::Ordering::Relaxed) => return Err(outcome),
@@ -220,7 +226,7 @@ fn run_one(asked: &Asked<'_>, subject: &RunSubject<'_>, planned: &Planned) -> Re
     read(&out).map(Some).map_err(|error| running.refuse(&error))
 }
 
-fn read(out: &PathBuf) -> Result<(Run, Took), results::ResultsError> {
+fn read(out: &Path) -> Result<(Run, Took), results::ResultsError> {
     let (run, timings) = (results::read(out)?, results::read_timings(out)?);
     let seconds = |name: &str| timings.get(name).copied().unwrap_or(0.0);
     Ok((run, Took { seconds: seconds("solve_s"), build_s: seconds("build_s") }))

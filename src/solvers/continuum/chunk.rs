@@ -291,8 +291,8 @@ fn scatter(batch: &Batch, f: &Corners, force: &mut Values) {
             for corner in [0, 3, 4, 7, 1, 2, 5, 6] {
                 for axis in 0..3 {
                     let sums = &mut force[axis][first[corner] as usize..][..LANES];
-                    for l in 0..LANES {
-                        sums[l] += f[axis][corner].0[l];
+                    for (sum, force) in sums.iter_mut().zip(&f[axis][corner].0) {
+                        *sum += force;
                     }
                 }
             }

@@ -5,15 +5,15 @@ use super::variants::{RunVariant, edit, is_on_grains, reference};
 use crate::check::{Modules, Override};
 use crate::compile::{Compiled, compile};
 use crate::diag::Sources;
-use crate::scenario::{Loading, Scenario};
+use crate::scenario::{Loading, Scenario, Vehicle};
 use crate::syntax::parse;
 use crate::syntax::tree::Item;
 use crate::units::number;
 
 /// Declarations that ask for more output and change no result.
 const DROPPED: [&str; 3] = ["record", "expect", "study"];
-/// Axles of a shortened run on grains.
-pub const SHORT: u64 = 20;
+/// Axles of a run on grains, and fewest of a run by a law.
+const SHORT: u64 = 20;
 /// The reference may take this share of the time for the whole chart.
 const SHARE: f64 = 0.5;
 /// Windows of a shortened run, from the soft side of a transition to its stiff side, in bays.
@@ -42,8 +42,8 @@ impl RunSubject<'_> {
     }
 }
 
-/// The scene of a chart, shortened until its reference is expected to take half of `budget` (s) at most. `axles`
-/// replaces the axles of the scene where it is given.
+/// The scene of a chart, shortened until its reference is expected to take half of `budget` (s) at most: by axles, and on
+/// grains by the window. `axles` replaces the axles of the scene where it is given.
 pub fn subject<'a>(
     (name, text): (&'a str, &str),
     modules: &'a (dyn Modules + Sync),
@@ -54,29 +54,63 @@ pub fn subject<'a>(
     let text = without_questions(name, text);
     let mut subject = RunSubject { name, text, modules, set: set.to_vec(), shortened: Vec::new() };
     let on_grains = is_on_grains(scenario);
-    let total = axles_of(scenario);
-    if let Some(wanted) = axles.or(on_grains.then_some(SHORT)).filter(|wanted| *wanted < total) {
-        subject.set.push(edit("traffic.total", &format!("{wanted} axles")));
-        subject.shortened.push(format!("{wanted} axles instead of {total}"));
-    }
+    let wanted = axles.or(on_grains.then_some(SHORT));
+    let rules = if on_grains { windows(scenario, wanted) } else { halves(scenario, wanted) };
     let fits = |subject: &RunSubject<'_>| {
         reference(scenario).iter().any(|variant| subject.seconds(variant).is_some_and(|s| s <= SHARE * budget))
     };
-    if !on_grains || fits(&subject) {
-        return subject;
-    }
-    let (whole, spacing) = (subject.set.len(), spacing(scenario));
-    for [soft, stiff] in WINDOWS {
-        let window = format!("-{} .. {} m", number(f64::from(soft) * spacing), number(f64::from(stiff) * spacing));
-        subject.set.truncate(whole);
-        subject.set.push(edit("solve.window", &window));
+    for (edits, sentences) in rules {
+        subject.set = [set, &edits].concat();
+        subject.shortened = sentences;
         if fits(&subject) {
-            subject.shortened.push(format!("grains from {window} around the transition"));
             return subject;
         }
     }
-    subject.shortened.push("the smallest window, although its reference takes more than half of the time".to_owned());
+    subject.shortened.push("as far as it goes, although its reference takes more than half of the time".to_owned());
     subject
+}
+
+/// Edits that shorten a scene, and what they do.
+type Rule = (Vec<Override>, Vec<String>);
+
+/// The whole window with these axles, then shorter windows.
+fn windows(scenario: &Scenario, wanted: Option<u64>) -> Vec<Rule> {
+    let whole = fewer_axles(scenario, wanted);
+    let spacing = spacing(scenario);
+    let shorter = WINDOWS.map(|[soft, stiff]| {
+        let window = format!("-{} .. {} m", number(f64::from(soft) * spacing), number(f64::from(stiff) * spacing));
+        let sentence = format!("grains from {window} around the transition");
+        let (mut edits, mut sentences) = whole.clone();
+        edits.push(edit("solve.window", &window));
+        sentences.push(sentence);
+        (edits, sentences)
+    });
+    std::iter::once(whole).chain(shorter).collect()
+}
+
+/// These axles, then half of them, and so on.
+fn halves(scenario: &Scenario, wanted: Option<u64>) -> Vec<Rule> {
+    let first = wanted.unwrap_or_else(|| axles_of(scenario));
+    let halves = std::iter::successors(Some(first), |axles| (*axles > 2 * SHORT).then_some(axles / 2));
+    halves.map(|axles| fewer_axles(scenario, Some(axles))).collect()
+}
+
+/// So many axles in whole trains, if the scene has more.
+fn fewer_axles(scenario: &Scenario, wanted: Option<u64>) -> Rule {
+    let (total, train) = (axles_of(scenario), axles_of_train(scenario));
+    match wanted.map(|axles| axles.next_multiple_of(train)).filter(|axles| *axles < total) {
+        Some(axles) => {
+            (vec![edit("traffic.total", &format!("{axles} axles"))], vec![format!("{axles} axles instead of {total}")])
+        }
+        None => Rule::default(),
+    }
+}
+
+fn axles_of_train(scenario: &Scenario) -> u64 {
+    match &scenario.loading {
+        Some(Loading::Traffic(traffic)) => (traffic.train.vehicles.len() as u64 * Vehicle::AXLES).max(1),
+        _ => 1,
+    }
 }
 
 fn axles_of(scenario: &Scenario) -> u64 {

@@ -78,8 +78,13 @@ pub fn reference(scenario: &Scenario) -> Vec<RunVariant> {
     if !is_on_grains(scenario) {
         let step = finer_step(scenario);
         let step = step.iter().map(|step| ("solve.time_step", step.as_str()));
-        let fine = [("solve.update_every", "adaptive(0.0003 mm)"), ("solve.elements_per_bay", "8")];
-        return vec![of("fine", &fine.into_iter().chain(step).collect::<Vec<_>>())];
+        let elements = (2 * *scenario.solve.elements_per_bay).clamp(8, 32).to_string();
+        let fine = [("solve.update_every", "adaptive(0.0003 mm)"), ("solve.elements_per_bay", elements.as_str())];
+        let finer = [("solve.update_every", "adaptive(0.001 mm)")];
+        return vec![
+            of("fine", &fine.into_iter().chain(step.clone()).collect::<Vec<_>>()),
+            of("finer", &finer.into_iter().chain(step).collect::<Vec<_>>()),
+        ];
     }
     let full = ("solve.substructure", "full");
     vec![
