@@ -42,8 +42,8 @@ impl RunSubject<'_> {
     }
 }
 
-/// The scene of a chart, shortened until its reference is expected to take half of `budget` (s) at most: by axles, and on
-/// grains by the window. `axles` replaces the axles of the scene where it is given.
+/// The scene of a chart, shortened until its reference is expected to take half of `budget` (s) at most: by axles, and
+/// on grains by the window. `axles` replaces the axles of the scene where it is given.
 pub fn subject<'a>(
     (name, text): (&'a str, &str),
     modules: &'a (dyn Modules + Sync),
