@@ -99,9 +99,9 @@ fn a_chart_of_runs_compares_with_the_finest() {
         assert_eq!(row["outcome"], "done");
         row["settlement_error"].parse::<f64>().unwrap()
     };
-    // the tighter exchange is nearer, and nearer than the scene's blocks of 8 axles; none has the reference's own bits
-    assert!(0.0 < error("adaptive_0.001_mm") && error("adaptive_0.001_mm") < error("adaptive_0.03_mm"));
-    assert!(error("adaptive_0.001_mm") < error("scene") && error("scene") < 1.0);
+    // a tighter exchange is as near or nearer, and nearer than blocks of 8 axles; none has the bits of the reference
+    assert!(0.0 < error("adaptive_0.001_mm") && error("adaptive_0.001_mm") <= error("adaptive_0.03_mm"));
+    assert!(error("adaptive_0.03_mm") < error("scene") && error("scene") < 0.1);
     assert!(rows.iter().any(|row| row["efficient"] == "yes"));
     let picture = check_picture(&out.join("chart.svg"));
     assert!(picture.contains("adaptive_0.001_mm"));

@@ -70,6 +70,11 @@ impl RunVariant {
         let edits = edits.iter().map(|(path, value)| edit(path, value)).collect();
         RunVariant { name: name.to_owned(), group, edits }
     }
+
+    /// Whether it names no tier with grains in a part of the window only.
+    pub fn is_whole(&self) -> bool {
+        self.edits.iter().all(|edit| edit.path != "solve.substructure" || edit.value == "full")
+    }
 }
 
 /// Candidates for the reference, the finest first.
