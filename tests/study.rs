@@ -111,6 +111,15 @@ fn a_chart_of_runs_compares_with_the_finest() {
     let other = short("24");
     assert_eq!(other.status.code(), Some(1));
     assert!(said(&other).contains("E0809"), "{}", said(&other));
+
+    // with a time that suffices for the reference at most, the table says what was left out
+    let shorter = dir.path().join("shorter");
+    let shorter =
+        ["chart", file.to_str().unwrap(), "--of", "run", "--minutes", "0.001", "--out", shorter.to_str().unwrap()];
+    let output = trackbed(&shorter);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains("errors against `finer`") && text.contains("left out: about"), "{text}");
 }
 
 /// Every tier and exchange of a scene on grains is planned without running it; equal runs are planned once, and what

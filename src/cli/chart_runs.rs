@@ -281,9 +281,10 @@ fn text(chart: &RunChart) -> String {
     out
 }
 
+/// A row of the table, with as many cells as every other.
 fn cells(row: &RunRow) -> Vec<String> {
     let name = row.variant.name.clone();
-    match &row.ended {
+    let mut cells = match &row.ended {
         Ended::Done(done) => {
             let mark = if done.efficient { " *" } else { "" };
             let errors = RunErrors::ALL.map(|(_, _, read)| read(&done.errors).map_or("-".to_owned(), percent));
@@ -294,7 +295,9 @@ fn cells(row: &RunRow) -> Vec<String> {
             vec![name, format!("left out: about {}", row.estimated_s.map_or("?".to_owned(), duration))]
         }
         Ended::Refused { reason } => vec![name, format!("refused: {reason}")],
-    }
+    };
+    cells.resize(3 + RunErrors::ALL.len(), String::new());
+    cells
 }
 
 fn percent(share: f64) -> String {

@@ -14,7 +14,7 @@ use crate::graph::Graph;
 use crate::lower::Parameter;
 use crate::results::{self, BedTestsView, BlockRow, Label, NamedBytes, ResultsError, Run, RunRecorder, Scalar, Source};
 use crate::scenario::Scenario;
-use crate::store::{Directory, Work};
+use crate::store::{Beds, Directory, Work};
 use crate::units::number;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -107,7 +107,11 @@ impl<'a> Running<'a> {
     }
 
     pub fn executor(&self) -> Executor {
-        Executor::default().with_beds(pack::beds(self.request.cache.as_deref()))
+        // runs whose times are compared build their own beds
+        match self.request.is_part {
+            true => Executor::default().with_beds(Beds::not_kept()),
+            false => Executor::default().with_beds(pack::beds(self.request.cache.as_deref())),
+        }
     }
 
     /// Shows why the run stops.
