@@ -186,6 +186,21 @@ fn nothing_is_silently_wrong() {
     check_picture(&out.join("stability.svg"));
 }
 
+/// Arguments that would do nothing are refused.
+#[test]
+fn arguments_of_the_other_chart_are_refused() {
+    let scene = "scenarios/transition.track";
+    for (arguments, names) in [
+        (["chart", scene, "--dry-run", "-q"].as_slice(), "need `--of run`"),
+        (&["chart", scene, "--minutes", "5"], "need `--of run`"),
+        (&["chart", scene, "--of", "run", "--dry-run", "--after", "0"], "`--after` is for a chart of a passage"),
+    ] {
+        let output = trackbed(arguments);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(said(&output).contains(names), "{}", said(&output));
+    }
+}
+
 #[test]
 fn a_study_needs_trains_and_known_counts() {
     let output = trackbed(&["chart", "scenarios/static_check.track"]);

@@ -27,7 +27,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Let so many axles settle the track first; the whole traffic where absent.
-    #[arg(long, value_name = "AXLES", conflicts_with_all = ["axles", "minutes", "packings", "dry_run"])]
+    #[arg(long, value_name = "AXLES")]
     after: Option<u64>,
     /// How often the scene's time step is halved.
     #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=8))]
@@ -35,13 +35,15 @@ pub(super) struct Arguments {
     /// With `--of run`: axles of each run; 20 on grains and the whole traffic by a law where absent.
     #[arg(long, value_name = "AXLES", value_parser = clap::value_parser!(u64).range(1..))]
     axles: Option<u64>,
-    /// With `--of run`: time for all runs, as estimated. The window of the grains is shortened until the reference
-    /// takes half of it, and runs that would exceed it are left out.
-    #[arg(long, value_name = "MINUTES", default_value_t = 60.0)]
-    minutes: f64,
-    /// With `--of run`: packings of the scene's own bed, which show what a difference must be measured against.
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(1..=100))]
-    packings: u64,
+    /// With `--of run`: time for all runs, as estimated; 60 minutes where absent. The scene is shortened until its
+    /// reference takes half of it, on grains by the window and by a law by axles. Runs that would exceed it are left
+    /// out.
+    #[arg(long, value_name = "MINUTES")]
+    minutes: Option<f64>,
+    /// With `--of run`: number of packings of the scene's own bed, 2 where absent. A difference between two methods
+    /// means little if it is smaller than the difference between two packings.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100))]
+    packings: Option<u64>,
     /// With `--of run`: show what would run and how long, and run nothing.
     #[arg(long)]
     dry_run: bool,
@@ -57,8 +59,18 @@ enum Of {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
+    let of_runs =
+        [arguments.axles.is_some(), arguments.minutes.is_some(), arguments.packings.is_some(), arguments.dry_run];
     match arguments.of {
+        Of::Passage if of_runs.contains(&true) => {
+            terminal::error("`--axles`, `--minutes`, `--packings` and `--dry-run` need `--of run`");
+            Outcome::Usage
+        }
         Of::Passage => of_passage(arguments),
+        Of::Run if arguments.after.is_some() => {
+            terminal::error("`--after` is for a chart of a passage: leave it out, or leave out `--of run`");
+            Outcome::Usage
+        }
         Of::Run => of_run(arguments),
     }
 }
@@ -72,7 +84,8 @@ fn of_run(arguments: &Arguments) -> Outcome {
             return Outcome::Usage;
         }
     };
-    if !(arguments.minutes > 0.0 && arguments.minutes.is_finite()) {
+    let minutes = arguments.minutes.unwrap_or(60.0);
+    if !(minutes > 0.0 && minutes.is_finite()) {
         terminal::error("`--minutes` must be a number above 0");
         return Outcome::Usage;
     }
@@ -80,8 +93,8 @@ fn of_run(arguments: &Arguments) -> Outcome {
         scene: &arguments.scene,
         out,
         axles: arguments.axles,
-        budget: 60.0 * arguments.minutes,
-        packings: arguments.packings,
+        budget: 60.0 * minutes,
+        packings: arguments.packings.unwrap_or(2),
         dry_run: arguments.dry_run,
         format: arguments.format,
     })

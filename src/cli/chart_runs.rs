@@ -13,7 +13,7 @@ use crate::results::{self, Run};
 use crate::scenario::Loading;
 use crate::store::{Directory, Mode};
 use crate::trials::runs::{
-    Ended, RunChart, RunErrors, RunRow, RunSubject, RunVariant, Took, reference, runs_csv, subject, variants,
+    Ended, RunChart, RunErrors, RunRow, RunSubject, RunVariant, SHARE, Took, reference, runs_csv, subject, variants,
 };
 use crate::units::number;
 use std::path::Path;
@@ -91,7 +91,7 @@ pub(super) fn run(asked: &Asked<'_>) -> Outcome {
         }
     }
     // the finest within half of the time, else the fastest
-    let within = finest.iter().position(|planned| planned.expected_seconds() <= 0.5 * asked.budget);
+    let within = finest.iter().position(|planned| planned.expected_seconds() <= SHARE * asked.budget);
     let Some(finest) = (!finest.is_empty()).then(|| finest.swap_remove(within.unwrap_or(finest.len() - 1))) else {
         terminal::error(&format!("no reference of this scene can run: {}", refused.unwrap_or_default()));
         return Outcome::Failed;

@@ -247,13 +247,13 @@ impl Listener for Recording<'_, '_> {
 
 /// Says how to go on with a run that Ctrl-C, SIGTERM or its memory has stopped.
 pub(super) fn stopped(request: &Request, has_kept: bool) -> Outcome {
-    let Request { out, is_worker, .. } = request;
+    let Request { out, is_worker, is_part, .. } = request;
     let kept = if has_kept { format!("the state is kept in `{}`", out.display()) } else { NOTHING_KEPT.to_owned() };
     if let Some(outgrown) = memory::outgrown(&kept) {
         terminal::diagnostics(&[outgrown], &Sources::default());
         return Outcome::Failed;
     }
-    let (out, how) = (out.display(), if *is_worker { "again" } else { "with `--resume`" });
+    let (out, how) = (out.display(), if *is_worker || *is_part { "again" } else { "with `--resume`" });
     terminal::note(&match has_kept {
         true => format!(
             "stopped: the state is kept in `{out}`\nto go on, run the same command {how}: the answer will be the same\n"

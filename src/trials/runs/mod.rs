@@ -12,5 +12,5 @@ mod variants;
 pub use chart::{Done, Ended, RunChart, RunRow, Took};
 pub use csv::runs_csv;
 pub use errors::RunErrors;
-pub use shorten::{RunSubject, subject};
+pub use shorten::{RunSubject, SHARE, subject};
 pub use variants::{Group, RunVariant, reference, variants};

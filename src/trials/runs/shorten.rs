@@ -15,7 +15,7 @@ const DROPPED: [&str; 3] = ["record", "expect", "study"];
 /// Axles of a run on grains, and fewest of a run by a law.
 const SHORT: u64 = 20;
 /// The reference may take this share of the time for the whole chart.
-const SHARE: f64 = 0.5;
+pub const SHARE: f64 = 0.5;
 /// Windows of a shortened run, from the soft side of a transition to its stiff side, in bays.
 const WINDOWS: [[u32; 2]; 4] = [[16, 2], [12, 2], [9, 2], [5, 2]];
 
