@@ -113,6 +113,21 @@ fn a_tolerance_out_of_reach_costs_no_more_than_every_train() {
 }
 
 #[test]
+fn forces_follow_the_settlement_within_a_long_block() {
+    // ten times as soft a bed: with forces that stay as they are, blocks of 32 axles already overshoot
+    let soft = ("form.gamma = 10 mm", "form.gamma = 100 mm");
+    let with = |blocks: &str| {
+        let (from, to) = every(blocks);
+        run(&[soft, (from, &to), ("[0, 100, 256]", "[0, 256]")], true)
+    };
+    let (single, reference) = with("4 axles");
+    let (blocks, settled) = with("adaptive(0.3 mm)");
+    assert!(blocks.len() <= 5 && 4 * passages(&blocks) < passages(&single), "{} passages", passages(&blocks));
+    let off = apart(&settled, &reference) / deepest(&reference);
+    assert!(off < 5e-3, "{off} of the largest settlement");
+}
+
+#[test]
 fn a_cap_bounds_the_settlement_of_a_block() {
     let (from, to) = every("adaptive(0.05 mm, cap = 0.05 mm)");
     let (blocks, _) = run(&[(from, &to)], true);

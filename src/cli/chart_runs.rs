@@ -15,7 +15,7 @@ use crate::store::{Directory, Mode};
 use crate::trials::runs::{
     Ended, RunChart, RunErrors, RunRow, RunSubject, RunVariant, SHARE, Took, reference, runs_csv, subject, variants,
 };
-use crate::units::number;
+use crate::units::{duration, percent};
 use std::path::Path;
 
 /// What a chart of runs is asked for.
@@ -298,19 +298,4 @@ fn cells(row: &RunRow) -> Vec<String> {
     };
     cells.resize(3 + RunErrors::ALL.len(), String::new());
     cells
-}
-
-fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    let digits = if percent < 1.0 { 1e3 } else { 10.0 };
-    format!("{} %", number((percent * digits).round() / digits))
-}
-
-fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 9.95 => format!("{} s", number((s * 100.0).round() / 100.0)),
-        s if s < 90.0 => format!("{} s", number(s.round())),
-        s if s < 5400.0 => format!("{} min", number((s / 6.0).round() / 10.0)),
-        s => format!("{} h", number((s / 360.0).round() / 10.0)),
-    }
 }

@@ -18,7 +18,7 @@ use crate::report;
 use crate::scenario::Study;
 use crate::store::Mode;
 use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Scene, StudyFolder};
-use crate::units::number;
+use crate::units::duration;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -260,14 +260,6 @@ fn announce(plan: &Plan, jobs: usize, executor: Executor) {
         plan.designs(),
         duration(plan.seconds())
     ));
-}
-
-fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 90.0 => format!("{} s", number(s.ceil())),
-        s if s < 5400.0 => format!("{} min", number((s / 60.0).round())),
-        s => format!("{} h", number((s / 360.0).round() / 10.0)),
-    }
 }
 
 /// What has run before, one for each point.

@@ -1,5 +1,6 @@
 //! From a text to a compiled scene, in memory: check, lower, lint.
 
+mod budget;
 mod by_law;
 mod unused;
 
@@ -72,9 +73,14 @@ pub fn compile_with(
     modules: &dyn Modules,
     overrides: &[Override],
 ) -> Compiled {
-    let checked = check::check(name, text, modules, overrides);
-    let mut diagnostics = checked.diagnostics;
+    let mut checked = check::check(name, text, modules, overrides);
+    let mut diagnostics = std::mem::take(&mut checked.diagnostics);
     let (mut graph, mut origins) = (None, Origins::default());
+    // a scene with a mistake has no plan, and a choice takes as long as several plans
+    let taken =
+        checked.scenario.as_ref().filter(|_| checked.sound).and_then(|scenario| budget::tier(planner, scenario));
+    let (within, chosen) = taken.map(|taken| (taken.scenario, taken.decision)).unzip();
+    checked.scenario = within.or(checked.scenario);
     if let Some(scenario) = &checked.scenario {
         // the run of the law is the longest part of a check, and a scene with a mistake has no plan
         let by_law = if checked.sound { by_law::settlement(planner, scenario) } else { None };
@@ -82,6 +88,9 @@ pub fn compile_with(
         // beside errors of the text, only further errors are reported
         diagnostics.extend(lowered.diagnostics.into_iter().filter(|d| checked.sound || d.is_error()));
         graph = lowered.graph.filter(|_| checked.sound);
+        if let (Some(graph), Some(chosen)) = (&mut graph, chosen) {
+            graph.decisions.insert(0, chosen);
+        }
         origins = lowered.origins;
         diagnostics.extend(graph.iter().flat_map(|graph| lint(scenario, graph)));
         // mistakes that would stop the run before the first axle

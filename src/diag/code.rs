@@ -170,6 +170,7 @@ codes! {
     L1033 Warning "declared softer side that is stiffer"
     L1034 Warning "ballast on a structure under a law of force"
     L1035 Warning "speed near the speed of surface waves"
+    L1036 Warning "expected error above the tolerance"
 }
 
 impl Code {
@@ -216,6 +217,7 @@ impl Code {
             Code::L1033 => "transition_sides",
             Code::L1034 => "ballast_on_structure",
             Code::L1035 => "surface_waves",
+            Code::L1036 => "outside_tolerance",
             _ => return None,
         })
     }

@@ -159,7 +159,7 @@ impl Run<'_, '_> {
         let Some(passage) = leading.first().and_then(|runner| here.passage(*runner)) else {
             return Ok(ControlFlow::Continue(()));
         };
-        let (listener, load) = (&mut *self.listener, Load { passage, trains: 1 });
+        let (listener, load) = (&mut *self.listener, Load::new(passage, 1));
         let began = (here.axles, self.done, self.pair.control);
         let follow = &mut |told: Told<'_>| tell_of_trains(listener, began, told);
         let samples = match self.pair.ground.record_alone(here.axles, &load, follow) {

@@ -1,8 +1,11 @@
 //! One exchange: the track after so many axles, and the passages of trains over it, each computed once.
 
 use crate::graph::{Block, Runner};
-use crate::nodes::{Forces, Kept, Load, NodeError, PassageOutcome, Request, Superstructure, Unloaded};
+use crate::nodes::{
+    Forces, Kept, Load, NodeError, PassageOutcome, Request, StandingForces, Superstructure, TrackSystem, Unloaded,
+};
 use rayon::prelude::*;
+use std::sync::OnceLock;
 
 /// The track at an axle count.
 pub(super) struct Exchange {
@@ -14,12 +17,14 @@ pub(super) struct Exchange {
     pub unloaded: Option<Unloaded>,
     /// In the order of the kinds of trains, forward before backward.
     passages: Vec<(Runner, PassageOutcome)>,
+    /// Forces of standing bogies on its settlement, from the first time that a block asks for them.
+    standing: OnceLock<StandingForces>,
 }
 
 impl Exchange {
     /// The settled track, before any train runs over it. The passages `shown` are recorded.
     pub fn new(axles: u64, settlement: Vec<f64>, shown: Vec<Runner>) -> Self {
-        Exchange { axles, settlement, shown, unloaded: None, passages: Vec::new() }
+        Exchange { axles, settlement, shown, unloaded: None, passages: Vec::new(), standing: OnceLock::new() }
     }
 
     /// Computes the missing passages, all at once, with the forces that the ground needs.
@@ -45,6 +50,15 @@ impl Exchange {
         }
         self.passages.sort_by_key(|(runner, _)| (runner.kind, runner.direction));
         Ok(())
+    }
+
+    /// Forces of standing bogies on its settlement.
+    pub fn standing(&self, track: &TrackSystem<'_>) -> Result<&StandingForces, NodeError> {
+        if let Some(known) = self.standing.get() {
+            return Ok(known);
+        }
+        let forces = track.standing(&self.settlement)?;
+        Ok(self.standing.get_or_init(|| forces))
     }
 
     /// The passage of a runner, where it has been computed.
@@ -76,7 +90,7 @@ impl Exchange {
     /// without a passage load nothing.
     pub fn loads(&self, blocks: &[Block]) -> Vec<Load<'_>> {
         let runs = blocks.iter().flat_map(|block| &block.runs);
-        runs.filter_map(|(runner, trains)| Some(Load { passage: self.passage(*runner)?, trains: *trains })).collect()
+        runs.filter_map(|(runner, trains)| Some(Load::new(self.passage(*runner)?, *trains))).collect()
     }
 }
 

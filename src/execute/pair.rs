@@ -4,9 +4,13 @@
 use super::exchange::Exchange;
 use super::machine::RunError;
 use crate::graph::{Block, Blocks, Clock, Control, Runner, TrackNode};
-use crate::nodes::{Following, Load, Substructure, Superstructure, TrackSystem};
+use crate::nodes::{
+    Following, Load, NodeError, PassageOutcome, StandingForces, Substructure, Superstructure, TrackSystem,
+};
+use crate::solvers::settlement::Peak;
 use crate::solvers::track::Direction::{Backward, Forward};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Stretches of neighbouring seats that can settle.
 pub(super) fn settling(track: &TrackNode) -> Vec<Range<usize>> {
@@ -18,6 +22,21 @@ pub(super) fn settling(track: &TrackNode) -> Vec<Range<usize>> {
         }
     }
     runs
+}
+
+/// Trains of one kind and direction with forces that have followed the settlement since their passage.
+#[derive(Clone)]
+pub(super) struct Followed<'e> {
+    passage: &'e PassageOutcome,
+    /// Index by seat, then by wheel.
+    peaks: Arc<[Vec<Peak>]>,
+    trains: u64,
+}
+
+/// The same as loads of the ground.
+pub(super) fn loads<'f>(followed: &'f [Followed<'_>]) -> Vec<Load<'f>> {
+    let load = |one: &'f Followed<'_>| Load { followed: Some(&one.peaks), ..Load::new(one.passage, one.trains) };
+    followed.iter().map(load).collect()
 }
 
 /// A track on its ground.
@@ -54,6 +73,55 @@ impl Pair<'_> {
     /// The settlement of every seat that these loads would leave, m.
     pub fn predict(&self, axles: u64, loads: &[Load<'_>]) -> Result<Vec<f64>, RunError> {
         self.ground.predict(loads).map_err(|cause| RunError::node(Clock::Axles(axles), cause))
+    }
+
+    /// Lets the trains of a block pass in thought, after those of `before`: in steps, with the forces of an exchange that
+    /// follow the settlement as the forces of standing bogies do. All trains of a step meet the mean of the forces at its
+    /// start and of those predicted for its end. Also returns the settlement of every seat after them, m.
+    pub fn followed<'e>(
+        &self,
+        exchange: &'e Exchange,
+        before: &[Followed<'e>],
+        block: &Block,
+    ) -> Result<(Vec<Followed<'e>>, Vec<f64>), RunError> {
+        let at = |cause: NodeError| RunError::node(Clock::Axles(exchange.axles), cause);
+        let standing = |settlement: &[f64]| self.track.standing(settlement).map_err(at);
+        let reference = exchange.standing(&self.track).map_err(at)?;
+        let mut passed: Vec<Followed<'e>> = before.to_vec();
+        let begun = self.predict(block.before, &loads(&passed))?;
+        let mut here = if begun == exchange.settlement { reference.clone() } else { standing(&begun)? };
+        for step in self.blocks.steps(block) {
+            let with = |forces: &StandingForces| -> Result<Vec<Followed<'e>>, RunError> {
+                let more = self.step_of(exchange, &step, [reference, forces]).map_err(at)?;
+                Ok([passed.as_slice(), &more].concat())
+            };
+            let mut all = with(&here)?;
+            if step.trains() > 1 {
+                let end = standing(&self.predict(block.before, &loads(&all))?)?;
+                all = with(&here.mean(&end, step.trains()))?;
+                here = end;
+            } else {
+                here = standing(&self.predict(block.before, &loads(&all))?)?;
+            }
+            passed = all;
+        }
+        let settlement = self.predict(block.before, &loads(&passed))?;
+        Ok((passed, settlement))
+    }
+
+    /// The trains of a step with the forces of an exchange, moved on from one set of standing forces to another.
+    fn step_of<'e>(
+        &self,
+        exchange: &'e Exchange,
+        step: &Block,
+        from_to: [&StandingForces; 2],
+    ) -> Result<Vec<Followed<'e>>, NodeError> {
+        let runs = step.runs.iter().filter_map(|(runner, trains)| Some((runner, exchange.passage(*runner)?, *trains)));
+        let one = |(runner, passage, trains): (&Runner, &'e PassageOutcome, u64)| {
+            let peaks = self.track.follow(runner.kind, passage, from_to)?.into();
+            Ok(Followed { passage, peaks, trains })
+        };
+        runs.map(one).collect()
     }
 
     /// Settlement of every seat, m.

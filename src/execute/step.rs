@@ -3,7 +3,7 @@
 use super::exchange::{Exchange, Work};
 use super::machine::RunError;
 use super::oscillation::{amplification, sawtooth};
-use super::pair::Pair;
+use super::pair::{Pair, loads};
 use crate::graph::Block;
 use crate::nodes::{Bonds, Following};
 
@@ -40,8 +40,6 @@ pub(super) struct Done {
 /// Largest amplification at which a disturbance keeps its sign, and the target for a block that is shortened.
 const MONOTONE: f64 = 1.0;
 const CALM: f64 = 0.5;
-/// Amplification from which the second-order step grows disturbances; it never turns their sign.
-const UNSTABLE: f64 = 2.0;
 
 impl Pair<'_> {
     /// A block of the prescribed length, with the forces of its start. If it overshoots, it is repeated with half the
@@ -91,9 +89,10 @@ impl Pair<'_> {
 
     /// A block as long as its error allows.
     ///
-    /// It is done in one piece with the forces of its start, and in two halves with forces computed anew between them;
-    /// the difference is the error of the first. The result that is kept is of second order: the first train passes
-    /// with the forces of the start, all others with the forces of the middle. Two trains are therefore exact.
+    /// Within the block the forces follow the settlement as the forces of standing bogies do ([`Pair::followed`]). The
+    /// block is done with the forces of its start, and in two halves with forces computed anew between them; the
+    /// difference is the error of the first. The result that is kept is of second order: the first train passes with
+    /// the forces of the start, all others with the forces of the middle. Two trains are therefore exact.
     pub fn adaptive(
         &mut self,
         here: &mut Exchange,
@@ -109,35 +108,30 @@ impl Pair<'_> {
             let trains = self.chosen(here, most, left)?;
             let block = self.blocks.block(here.axles, trains);
             self.ensure(here, &block.runners())?;
-            let loads = here.loads(&self.blocks.parts(&block));
-            let whole = self.predict(here.axles, &loads)?;
-            let settled = difference(&whole, &here.settlement);
             if trains == 1 {
+                let loads = here.loads(std::slice::from_ref(&block));
+                let settled = difference(&self.predict(here.axles, &loads)?, &here.settlement);
                 measured.sawtooth = sawtooth(&self.runs, &settled);
                 self.advance(here.axles, &loads, follow)?;
                 return Ok(Done { block, measured, next: None });
             }
-
+            let (_, whole) = self.followed(here, &[], &block)?;
             let half = self.blocks.block(here.axles, trains / 2);
-            let first_half = here.loads(&self.blocks.parts(&half));
+            let (first_half, halfway) = self.followed(here, &[], &half)?;
             let axles = half.before + half.axles;
             // a shorter block after a rejected one may have the same middle
             let mut between = match middle.take().filter(|middle| middle.axles == axles) {
                 Some(middle) => middle,
-                None => Exchange::new(axles, self.predict(here.axles, &first_half)?, Vec::new()),
+                None => Exchange::new(axles, halfway, Vec::new()),
             };
             let known = between.work();
             self.ensure(&mut between, &block.runners())?;
             measured.add(&between, known);
             let rest = self.blocks.block(axles, trains.div_ceil(2));
-            let both_halves = [first_half, between.loads(&self.blocks.parts(&rest))].concat();
-            let halves = self.predict(here.axles, &both_halves)?;
+            let (_, halves) = self.followed(&between, &first_half, &rest)?;
             let error = largest(&difference(&whole, &halves));
-            let moved = difference(&between.settlement, &here.settlement);
-            let change = self.change(here, &between, &block)?;
-            measured.overshoot = change.and_then(|change| amplification(&moved, &change));
-            self.control.learn(error, largest(&settled), tolerance, cap);
-            if trains > 2 && (error > tolerance || measured.overshoot.is_some_and(|a| a > UNSTABLE)) {
+            self.control.learn(error, largest(&difference(&whole, &here.settlement)), tolerance, cap);
+            if trains > 2 && error > tolerance {
                 measured.rejected += 1;
                 most = (trains / 2).max(2);
                 middle = Some(between);
@@ -150,7 +144,8 @@ impl Pair<'_> {
         }
     }
 
-    /// Lets a block pass: its first train with the forces of the start, the others with those of the middle.
+    /// Lets a block pass: its first train with the forces of the start, the others with those of the middle, which
+    /// follow the settlement.
     fn second_order(
         &mut self,
         here: &Exchange,
@@ -160,8 +155,9 @@ impl Pair<'_> {
     ) -> Result<(), RunError> {
         let one = self.blocks.block(here.axles, 1);
         let others = self.blocks.block(here.axles + one.axles, trains - 1);
-        let first = here.loads(&self.blocks.parts(&one));
-        self.advance(here.axles, &[first, between.loads(&self.blocks.parts(&others))].concat(), follow)
+        let (first, _) = self.followed(here, &[], &one)?;
+        let (all, _) = self.followed(between, &first, &others)?;
+        self.advance(here.axles, &loads(&all), follow)
     }
 
     /// Trains of the next block: the number whose settlement with the forces of the start equals the target of the

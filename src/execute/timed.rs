@@ -46,7 +46,7 @@ fn timed(machine: &Machine<'_>, measured: Measured, tell: &mut Telling<'_>) -> R
     let settlement = ground.settlement();
     let request = Request { axles: 0, settlement: &settlement, runner, kept: Kept::Nothing, forces: Forces::Wheels };
     let (_, passage) = track.passage(request)?;
-    let load = Load { passage: &passage, trains: 1 };
+    let load = Load::new(&passage, 1);
     let mut timed = ground.time_steps(&load, measured.steps)?;
     timed.energy = if measured.energy { Some(ground.energy_of(&load, tell)?) } else { None };
     timed.idle_m = if measured.idle { Some(ground.idle(IDLE, tell)?) } else { None };

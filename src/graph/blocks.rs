@@ -8,6 +8,9 @@ use crate::solvers::track::Direction;
 /// train runs after the other, so the order of the trains is kept to within a sixteenth of the block.
 const PARTS: u64 = 16;
 
+/// Steps of a block in which the forces follow the settlement.
+const STEPS: u64 = 12;
+
 /// Passages over the track at an axle count.
 pub struct Due {
     pub passages: Vec<Runner>,
@@ -144,6 +147,25 @@ impl Blocks {
             part
         };
         (0..parts).map(part).collect()
+    }
+
+    /// Divides a block into steps that settle the track by about the same amount: settlement grows about as the cube root
+    /// of the number of trains.
+    pub fn steps(&self, block: &Block) -> Vec<Block> {
+        let (first, last) = (self.position(block.before), self.position(block.before + block.axles));
+        let roots = [first, last].map(|position| (position as f64).cbrt());
+        let end = |step: u64| (roots[0] + (roots[1] - roots[0]) * step as f64 / STEPS as f64).powi(3).round() as u64;
+        let mut steps = Vec::new();
+        let (mut position, mut before) = (first, block.before);
+        for step in 1..=STEPS {
+            let end = if step == STEPS { last } else { end(step).clamp(position, last) };
+            if end > position {
+                let step = self.block(before, end - position);
+                (position, before) = (end, before + step.axles);
+                steps.push(step);
+            }
+        }
+        steps
     }
 
     /// The blocks of a run whose policy does not depend on forces; `None` for an adaptive policy.

@@ -20,6 +20,37 @@ pub struct Rejected {
     pub why: String,
     /// Its cost on two cores, s, if known.
     pub seconds: Option<f64>,
+    /// Its expected error / largest settlement, if known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<f64>,
+}
+
+impl Rejected {
+    /// An alternative of unknown cost and error.
+    pub fn new(what: impl Into<String>, why: impl Into<String>) -> Rejected {
+        Rejected { what: what.into(), why: why.into(), seconds: None, error: None }
+    }
+}
+
+/// Expected error of a plan / largest settlement, as far as charts show it.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ExpectedError {
+    /// By blocks, mesh and steps, against a fine run of the same models; `None` if only the run can tell.
+    pub numerical: Option<f64>,
+    /// By the tier, against grains under the whole window; `None` if the scene has no grains or no chart shows it.
+    pub of_tier: Option<f64>,
+    /// The evidence for the error of the tier.
+    pub evidence: String,
+}
+
+impl ExpectedError {
+    /// The sum of both, as far as they are known; `None` if neither is.
+    pub fn share(&self) -> Option<f64> {
+        match (self.numerical, self.of_tier) {
+            (None, None) => None,
+            (a, b) => Some(a.unwrap_or(0.0) + b.unwrap_or(0.0)),
+        }
+    }
 }
 
 /// Cost of a run: an estimate from the number of unknowns and steps.

@@ -1,13 +1,13 @@
 //! The graph for readers: text, JSON and DOT, generated from the nodes with their ports and from the edges.
 
 use super::{
-    ActuatorsNode, BedNode, BedPlan, Blocks, CellsNode, Cost, Decision, Edge, GrainsNode, Graph, LawNode, Model, Node,
-    Quantity, Schedule, SoilNode, StiffnessFrom, TestWork, Tests, TrackNode, Update, Work,
+    ActuatorsNode, BedNode, BedPlan, Blocks, CellsNode, Cost, Decision, Edge, ExpectedError, GrainsNode, Graph,
+    LawNode, Model, Node, Quantity, Schedule, SoilNode, StiffnessFrom, TestWork, Tests, TrackNode, Update, Work,
 };
 use crate::solvers::granular::Glue;
 use crate::solvers::granular::rig::{Crib, Glued, Load};
 use crate::solvers::track::Integrator;
-use crate::units::number;
+use crate::units::{duration, number, percent};
 use serde::Serialize;
 
 /// A graph in names and sentences.
@@ -18,6 +18,7 @@ pub struct Listing {
     pub schedule: Vec<String>,
     pub passes: Vec<Decision>,
     pub cost: Cost,
+    pub error: ExpectedError,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -47,6 +48,7 @@ impl Graph {
             schedule: self.schedule_lines(),
             passes: self.decisions.clone(),
             cost: self.cost,
+            error: self.error.clone(),
         }
     }
 
@@ -361,13 +363,19 @@ fn rounded(value: f64) -> String {
     number(format!("{value:.2e}").parse().unwrap_or(value))
 }
 
-/// `40 s`, `12 min`, `3 h`
-fn duration(seconds: f64) -> String {
-    match seconds {
-        seconds if seconds < 120.0 => format!("{} s", seconds.ceil()),
-        seconds if seconds < 7200.0 => format!("{} min", (seconds / 60.0).ceil()),
-        seconds => format!("{} h", (seconds / 3600.0).ceil()),
-    }
+/// The expected error of a plan, a line for each part.
+fn error_lines(error: &ExpectedError) -> String {
+    let numerical = error
+        .numerical
+        .map(|share| format!("expected error: {} of the largest settlement, by blocks and steps\n", percent(share)));
+    let of_tier = error.of_tier.map(|share| {
+        format!(
+            "expected error: {} by this model of the ground, against grains under the whole window: {}\n",
+            percent(share),
+            error.evidence
+        )
+    });
+    [numerical, of_tier].into_iter().flatten().collect()
 }
 
 fn cost_lines(cost: &Cost) -> String {
@@ -416,10 +424,12 @@ impl Listing {
             out.push_str(&format!("pass {}: {}\n  because {}\n", pass.pass, pass.what, pass.why));
             for other in &pass.rejected {
                 let seconds = other.seconds.map_or(String::new(), |s| format!(", about {} on two cores", duration(s)));
-                out.push_str(&format!("  not {}: {}{seconds}\n", other.what, other.why));
+                let error = other.error.map_or(String::new(), |e| format!(", expected error {}", percent(e)));
+                out.push_str(&format!("  not {}: {}{seconds}{error}\n", other.what, other.why));
             }
         }
         out.push_str(&cost_lines(&self.cost));
+        out.push_str(&error_lines(&self.error));
         out
     }
 

@@ -23,7 +23,7 @@ mod train;
 pub use blocks::Due;
 pub use cells::{CellPlan, CellsNode, SeatOnCell, seats_alike};
 pub use control::Control;
-pub use decision::{Cost, Decision, PassageWork, Rejected, TestWork, Work};
+pub use decision::{Cost, Decision, ExpectedError, PassageWork, Rejected, TestWork, Work};
 pub use grains::{
     ActuatorsNode, BedError, BedNode, BedPlan, BedRecipe, GrainStretch, GrainsNode, SensorNode, SensorVolume,
     SleeperOnGrains, SoilBlock, SoilLayer, SoilNode, StandingBody, StiffnessFrom, VolumeUnderTrack,
@@ -39,7 +39,7 @@ pub use schedule::{
     AdaptiveSteps, Block, Blocks, Clock, LoadedPart, PassagePlan, PointLoad, Runner, Schedule, Tamping, Tests, Update,
 };
 pub use track::{Responses, TrackFoot, TrackNode, TrackSeat, TrackSection};
-pub use train::{Runs, Train};
+pub use train::{Bogie, Runs, Train};
 
 use serde::{Deserialize, Serialize};
 
@@ -56,6 +56,7 @@ pub struct Graph {
     /// Decisions of the passes, with their reasons.
     pub decisions: Vec<Decision>,
     pub cost: Cost,
+    pub error: ExpectedError,
     /// Whether this version has every node of the graph; otherwise the graph is shown but not run.
     pub runs: bool,
 }

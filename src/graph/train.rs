@@ -27,6 +27,15 @@ pub enum Runs {
     BothWays,
 }
 
+/// Two wheels of a bogie at rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bogie {
+    /// Force of a wheel, N, and distance of the two wheels, m.
+    pub wheels: [f64; 2],
+    /// The wheels of the train that have this bogie, the leading wheel 0.
+    pub wheels_of_train: Vec<usize>,
+}
+
 /// Axles of a vehicle.
 const AXLES: u64 = 4;
 
@@ -49,6 +58,21 @@ impl Train {
     pub fn static_wheel_loads(&self, gravity: f64) -> impl Iterator<Item = f64> + '_ {
         let load = move |vehicle: &Vehicle| vehicle.mass() * gravity / AXLES as f64;
         self.vehicles.iter().flat_map(move |(vehicle, _)| std::iter::repeat_n(load(vehicle), AXLES as usize))
+    }
+
+    /// The different bogies of the train; all bogies of equal wheels are one.
+    pub fn bogies(&self, gravity: f64) -> Vec<Bogie> {
+        let mut bogies: Vec<Bogie> = Vec::new();
+        for (number, (vehicle, _)) in self.vehicles.iter().enumerate() {
+            let wheels = [vehicle.mass() / AXLES as f64 * gravity, vehicle.wheelset_spacing];
+            let first = number * AXLES as usize;
+            let of_vehicle = first..first + AXLES as usize;
+            match bogies.iter_mut().find(|bogie| bogie.wheels == wheels) {
+                Some(bogie) => bogie.wheels_of_train.extend(of_vehicle),
+                None => bogies.push(Bogie { wheels, wheels_of_train: of_vehicle.collect() }),
+            }
+        }
+        bogies
     }
 
     /// Distance from the first to the last wheel, m.

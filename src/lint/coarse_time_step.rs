@@ -8,7 +8,7 @@ use super::{Led, led};
 use crate::diag::{Code, Diagnostic};
 use crate::graph::{Graph, SupportNode};
 use crate::scenario::{Foot, Scenario, Seat};
-use crate::units::number;
+use crate::units::{number, rounded_down};
 use std::f64::consts::PI;
 
 const STEPS_A_PERIOD: f64 = 20.0;
@@ -44,12 +44,6 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         Some(span) => diagnostic.label(span, "too coarse"),
         None => diagnostic,
     }]
-}
-
-/// Two digits, never more than the value.
-fn rounded_down(value: f64) -> f64 {
-    let size = 10f64.powf(1.0 - value.log10().floor());
-    (value * size).floor() / size
 }
 
 fn contact(scenario: &Scenario, traffic: Led<'_>) -> f64 {

@@ -20,6 +20,7 @@ mod irregularity_too_sharp;
 mod law_outside_calibration;
 mod layer_order;
 mod narrow_bed;
+mod outside_tolerance;
 mod over_budget;
 mod overdamped;
 mod passing_frequency;
@@ -56,7 +57,7 @@ use std::borrow::Cow;
 
 type Rule = fn(&Scenario, &Graph) -> Vec<Diagnostic>;
 
-const RULES: [Rule; 34] = [
+const RULES: [Rule; 35] = [
     transition_sides::check,
     stiffness_jump::check,
     ballast_on_structure::check,
@@ -83,6 +84,7 @@ const RULES: [Rule; 34] = [
     grain_step::check,
     grain_overlap::check,
     over_budget::check,
+    outside_tolerance::check,
     small_volume::check,
     wagon_speed::check,
     ballast_thickness::check,

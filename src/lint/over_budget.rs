@@ -6,7 +6,7 @@
 use crate::diag::{Code, Diagnostic};
 use crate::graph::{Cost, Graph, PassageWork, TestWork, Work};
 use crate::scenario::{Given, Scenario};
-use crate::units::number;
+use crate::units::{duration, number};
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     if !graph.runs {
@@ -82,15 +82,5 @@ fn said(message: String, limit: Given, help: &str) -> Diagnostic {
     match limit.origin.span() {
         Some(span) => diagnostic.label(span, "the limit"),
         None => diagnostic,
-    }
-}
-
-/// `40 s`, `12.5 min`, `3.2 h`
-fn duration(seconds: f64) -> String {
-    let tenth = |x: f64| number((x * 10.0).round() / 10.0);
-    match seconds {
-        short if short < 120.0 => format!("{} s", tenth(short)),
-        middling if middling < 7200.0 => format!("{} min", tenth(middling / 60.0)),
-        long => format!("{} h", tenth(long / 3600.0)),
     }
 }

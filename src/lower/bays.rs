@@ -55,7 +55,7 @@ impl Pass for Bays {
             );
             return;
         };
-        let tolerance = scenario.solve.grains.tolerance;
+        let tolerance = *scenario.solve.grains.tolerance;
         let changes = changes(scenario, settlement);
         draft.bays = differing(scenario, settlement);
         let spans = |windows: &[[f64; 2]]| {
@@ -91,7 +91,7 @@ pub(super) fn wanted(scenario: &Scenario) -> Vec<[f64; 2]> {
 /// The bays of each window that differ from the far field; `settlement` is the settlement of every seat, m.
 pub(super) fn differing(scenario: &Scenario, settlement: &[f64]) -> Vec<[f64; 2]> {
     let changes = changes(scenario, settlement);
-    let tolerance = scenario.solve.grains.tolerance;
+    let tolerance = *scenario.solve.grains.tolerance;
     wanted(scenario).into_iter().map(|window| chosen(scenario, &changes, tolerance, window)).collect()
 }
 

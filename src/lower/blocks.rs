@@ -218,11 +218,9 @@ impl Pass for Shared {
         let about = if blocks.adaptive().is_some() { "about " } else { "" };
         let what = format!("{about}{} passages stand for {trains} trains", work.passages);
         let each = cost.seconds_on_two_cores / work.passages.max(1) as f64;
-        let rejected = Rejected {
-            what: "a passage of every train".into(),
-            why: "it would only remove the error of blocks, which the run measures".into(),
-            seconds: Some(each * trains as f64),
-        };
+        let why_not = "it would only remove the error of blocks, which the run measures";
+        let seconds = Some(each * trains as f64);
+        let rejected = Rejected { seconds, ..Rejected::new("a passage of every train", why_not) };
         draft.decide_against(self.name(), what, why, vec![rejected]);
     }
 

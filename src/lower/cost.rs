@@ -30,7 +30,7 @@ pub(super) fn at_rest(node: &TrackNode) -> Cost {
 /// The cost of the passages of all blocks, of the records and of the files.
 pub(super) fn of_blocks(node: &TrackNode, blocks: &Blocks, outlook: &Outlook) -> Cost {
     let unknowns = unknowns(node);
-    let Outlook { blocks: count, axles, passages: of_kinds } = outlook;
+    let Outlook { blocks: count, axles, passages: of_kinds, .. } = outlook;
     let passages = of_kinds.iter().sum();
     let mut work = PassageWork { unknowns, blocks: *count, block_axles: *axles, passages, steps: 0 };
     let mut seconds = 0.0;

@@ -2,7 +2,7 @@
 //! beside each transition on its supports, under standing wheels over one seat after the other. Dynamic effects are
 //! only a factor on the wheel force.
 
-use crate::graph::{Block, Blocks, Control, Responses, Runner, SupportNode, TrackNode, Train};
+use crate::graph::{Block, Blocks, Bogie, Control, Responses, Runner, SupportNode, TrackNode, Train};
 use crate::solvers::settlement::{Law, Peak, SupportState};
 use crate::solvers::track::{Track, forces_under_wheels};
 
@@ -22,6 +22,8 @@ pub(super) struct DryRun<'a> {
     stretches: Vec<Stretch>,
     states: States,
     control: Control,
+    /// Sum of the errors of the blocks so far, m.
+    pub error: f64,
 }
 
 /// A modelled part of the track.
@@ -33,15 +35,47 @@ struct Stretch {
     initial: Vec<f64>,
     /// Indices of the seats that settle.
     seats: Vec<usize>,
-    /// For each kind of train: wheel force (N) and distance of the two wheels of a bogie (m), and number of vehicles
-    /// with these values.
-    wheels: Vec<Vec<([f64; 2], u64)>>,
+    /// For each kind of train: its different bogies, and the number of vehicles with them.
+    wheels: Vec<Vec<(Bogie, u64)>>,
 }
 
 /// Index by stretch, then by settling seat.
 type States = Vec<Vec<SupportState>>;
 /// Index by stretch, kind of train, kind of vehicle and settling seat.
 type Peaks = Vec<Vec<Vec<Vec<Peak>>>>;
+
+/// Forces of running trains and of standing bogies on one settlement.
+struct Forces {
+    running: Peaks,
+    standing: Peaks,
+}
+
+impl Forces {
+    /// Forces of running trains on another settlement: `trains` trains, the first of which meets the standing forces
+    /// `here` and the next after the last `end`.
+    fn on(&self, here: &Peaks, end: &Peaks, trains: u64) -> Peaks {
+        let weight = 0.5 * (trains - 1) as f64 / trains as f64;
+        let between = |a: f64, b: f64| a + weight * (b - a);
+        let flat = |peaks: &Peaks| peaks.iter().flatten().flatten().flatten().copied().collect::<Vec<Peak>>();
+        let [standing, here, end] = [&self.standing, here, end].map(flat);
+        let mut on = self.running.clone();
+        for (at, peak) in on.iter_mut().flatten().flatten().flatten().enumerate() {
+            peak.force += between(here[at].force, end[at].force) - standing[at].force;
+            peak.deflection += between(here[at].deflection, end[at].deflection) - standing[at].deflection;
+            (peak.force, peak.deflection) = (peak.force.max(0.0), peak.deflection.max(0.0));
+        }
+        on
+    }
+}
+
+/// Largest settlement by the law under the forces on the new track, m: by all trains, or until the first tamping.
+pub(super) fn as_built(track: &TrackNode, supports: &[SupportNode], law: &Law, blocks: &Blocks) -> f64 {
+    let dry = DryRun::new(track, supports, law, blocks, (f64::INFINITY, None));
+    let tamped = blocks.tampings.iter().flat_map(|tamping| tamping.after.iter().copied()).filter(|count| *count > 0);
+    let trains = tamped.min().map_or(blocks.sequence.trains(), |count| blocks.sequence.within(count));
+    let states = dry.after(&dry.states, &blocks.block(0, trains), &dry.peaks(&dry.states, 1.0));
+    largest(&settlements(&dry.states), &settlements(&states))
+}
 
 impl<'a> DryRun<'a> {
     pub fn new(
@@ -62,7 +96,7 @@ impl<'a> DryRun<'a> {
         let ranges = beside_transitions(track).into_iter().filter(|range| new(range)).take(STRETCHES);
         let stretches: Vec<Stretch> = ranges.filter_map(|range| Stretch::new(track, supports, blocks, range)).collect();
         let states = stretches.iter().map(|stretch| vec![law.fresh(); stretch.seats.len()]).collect();
-        DryRun { blocks, tolerance, cap, stretches, states, control: Control::default() }
+        DryRun { blocks, tolerance, cap, stretches, states, control: Control::default(), error: 0.0 }
     }
 
     /// Starts the settlement law of every seat again.
@@ -74,42 +108,62 @@ impl<'a> DryRun<'a> {
     pub fn next(&mut self, before: u64, mut middle: impl FnMut(&[Runner])) -> Block {
         let left = self.blocks.trains_left(before);
         let mut most = left;
-        let here = self.peaks(&self.states);
+        let here = self.forces(&self.states);
         let begun = settlements(&self.states);
         loop {
             let settled = |trains| {
-                let states = self.after(&self.states, &self.blocks.block(before, trains), &here);
+                let states = self.after(&self.states, &self.blocks.block(before, trains), &here.running);
                 largest(&begun, &settlements(&states))
             };
             let trains = self.control.choose(most, left, settled);
             let block = self.blocks.block(before, trains);
-            let whole = self.after(&self.states, &block, &here);
             if trains == 1 {
-                self.states = whole;
+                self.states = self.after(&self.states, &block, &here.running);
                 return block;
             }
             middle(&block.runners());
+            let at_once = settlements(&self.followed(&here, &self.states, &block));
             let half = self.blocks.block(before, trains / 2);
-            let halfway = self.after(&self.states, &half, &here);
-            let there = self.peaks(&halfway);
+            let halfway = self.followed(&here, &self.states, &half);
+            let there = self.forces(&halfway);
             let rest = self.blocks.block(before + half.axles, trains - trains / 2);
-            let by_halves = settlements(&self.after(&halfway, &rest, &there));
-            let at_once = settlements(&whole);
+            let by_halves = settlements(&self.followed(&there, &halfway, &rest));
             let error = largest(&at_once, &by_halves);
             self.control.learn(error, largest(&begun, &at_once), self.tolerance, self.cap);
             if trains > 2 && error > self.tolerance {
                 most = (trains / 2).max(2);
                 continue;
             }
+            self.error += if trains > 2 { error } else { 0.0 };
             let one = self.blocks.block(before, 1);
             let others = self.blocks.block(before + one.axles, trains - 1);
-            self.states = self.after(&self.after(&self.states, &one, &here), &others, &there);
+            let first = self.after(&self.states, &one, &here.running);
+            self.states = self.followed(&there, &first, &others);
             return block;
         }
     }
 
-    fn peaks(&self, states: &States) -> Peaks {
-        self.stretches.iter().zip(states).map(|(stretch, states)| stretch.peaks(states)).collect()
+    /// The states of the seats after a block, under forces that follow the settlement as in a run.
+    fn followed(&self, reference: &Forces, from: &States, block: &Block) -> States {
+        let mut states = from.clone();
+        let mut here = self.peaks(&states, 1.0);
+        for step in self.blocks.steps(block) {
+            let at_start = self.after(&states, &step, &reference.on(&here, &here, 1));
+            let end = self.peaks(&at_start, 1.0);
+            let trains = step.trains();
+            states = if trains > 1 { self.after(&states, &step, &reference.on(&here, &end, trains)) } else { at_start };
+            here = end;
+        }
+        states
+    }
+
+    fn forces(&self, states: &States) -> Forces {
+        Forces { running: self.peaks(states, DYNAMIC), standing: self.peaks(states, 1.0) }
+    }
+
+    /// The largest force of a wheel on each support, with wheel forces of `times` the static force.
+    fn peaks(&self, states: &States, times: f64) -> Peaks {
+        self.stretches.iter().zip(states).map(|(stretch, states)| stretch.peaks(states, times)).collect()
     }
 
     /// The states of the seats after a block under the peak forces.
@@ -135,20 +189,24 @@ impl Stretch {
         let responses = Responses { revision: 0, seats: supports.iter().map(|support| support.spring).collect() };
         let seats = (0..supports.len()).filter(|seat| supports[*seat].spring.is_some()).collect();
         let initial = supports.iter().map(|support| support.settlement).collect();
-        let wheels = blocks.kinds().map(|(train, _)| wheels(train, node.gravity)).collect();
+        let vehicles = |bogie: &Bogie| bogie.wheels_of_train.len() as u64 / 4;
+        let of_train =
+            |train: &Train| train.bogies(node.gravity).into_iter().map(|b| (b.clone(), vehicles(&b))).collect();
+        let wheels = blocks.kinds().map(|(train, _)| of_train(train)).collect();
         Some(Stretch { track: Track::new(node.model(&responses)).ok()?, node, responses, initial, seats, wheels })
     }
 
     /// The largest force of a wheel on each support; 0 if the track has no equilibrium, which the run reports as an
     /// error.
-    fn peaks(&self, states: &[SupportState]) -> Vec<Vec<Vec<Peak>>> {
+    fn peaks(&self, states: &[SupportState], times: f64) -> Vec<Vec<Vec<Peak>>> {
         let mut settlement = self.initial.clone();
         for (seat, state) in self.seats.iter().zip(states) {
             settlement[*seat] += state.settlement();
         }
         let level = self.node.level(&settlement, &self.responses);
-        let under = |(wheels, _): &([f64; 2], u64)| {
-            let forces = forces_under_wheels(&self.track, &level, *wheels, &self.seats);
+        let under = |(bogie, _): &(Bogie, u64)| {
+            let [force, apart] = bogie.wheels;
+            let forces = forces_under_wheels(&self.track, &level, [times * force, apart], &self.seats);
             let forces = forces.unwrap_or_else(|_| vec![[0.0; 2]; self.seats.len()]);
             forces.into_iter().map(|[force, deflection]| Peak { force, deflection }).collect()
         };
@@ -192,17 +250,4 @@ fn likeness(track: &TrackNode, supports: &[SupportNode], [first, last]: [usize; 
     let seats = track.seats[first..=last].iter().zip(&supports[first..=last]);
     let of = |support: &SupportNode| support.spring.map_or(0.0, |spring| spring.stiffness);
     seats.map(|(seat, support)| [seat.bay, seat.pad_stiffness, of(support), support.settlement]).collect()
-}
-
-/// Wheel forces of a train (N) and distance of the two wheels of a bogie (m); equal vehicles are counted together.
-fn wheels(train: &Train, gravity: f64) -> Vec<([f64; 2], u64)> {
-    let mut wheels: Vec<([f64; 2], u64)> = Vec::new();
-    for (vehicle, _) in &train.vehicles {
-        let of = [DYNAMIC * vehicle.mass() / 4.0 * gravity, vehicle.wheelset_spacing];
-        match wheels.iter_mut().find(|(known, _)| *known == of) {
-            Some((_, vehicles)) => *vehicles += 1,
-            None => wheels.push((of, 1)),
-        }
-    }
-    wheels
 }

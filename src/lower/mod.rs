@@ -1,5 +1,6 @@
 //! From the scenario to the solver graph: passes that choose models, places, steps and blocks, and say why.
 
+mod accuracy;
 mod answers;
 mod bays;
 mod bed;
@@ -25,7 +26,7 @@ pub use bed::{BedUse, beds};
 pub use origins::{Origins, Parameter};
 pub use pass::{Draft, Pass};
 pub use supports::{supports, with_stated_supports};
-pub use tier::{ExpectedError, Proposal, Tier};
+pub use tier::{Proposal, Tier};
 
 use crate::diag::{Code, Diagnostic, Severity};
 use crate::graph::{Graph, faults};
@@ -105,11 +106,15 @@ impl Planner {
     /// The passes in their order.
     fn passes(&self) -> Vec<Box<dyn Pass + '_>> {
         let mut passes: Vec<Box<dyn Pass + '_>> = vec![
-            // trains first: blocks are counted in whole trains, and all tiers use the same passages
+            // steps are shorter than the time in which a wheel crosses an element
+            Box::new(accuracy::Mesh),
+            // trains before tiers: blocks are counted in whole trains, and all tiers use the same passages
             Box::new(passage::Passages),
             Box::new(blocks::Cut),
             // all tiers use the same supports
             Box::new(supports::Supports),
+            // the error of a block is a share of the settlement, which depends on the supports
+            Box::new(accuracy::Exchange),
             // grains lie in the bays that differ from the far field
             Box::new(bays::Bays),
             // a tier makes the nodes and estimates their cost
@@ -200,12 +205,24 @@ fn finished(draft: Draft<'_>) -> (Option<Graph>, Vec<Diagnostic>) {
     let wrong = draft.is_wrong();
     // a track without rails and without a load needs these first
     let idle = draft.scenario.loading.is_none() && !draft.scenario.track.has_rails();
-    let Draft { supports, nodes, edges, schedule, records, cost, decisions, runs, mut diagnostics, refusals, .. } =
-        draft;
+    let Draft {
+        supports,
+        nodes,
+        edges,
+        schedule,
+        records,
+        cost,
+        error,
+        decisions,
+        runs,
+        mut diagnostics,
+        refusals,
+        ..
+    } = draft;
     diagnostics.extend(refusals);
     diagnostics.retain(|diagnostic| !idle || diagnostic.code != Code::E0604);
     let (Some(schedule), Some(cost)) = (schedule.filter(|_| !wrong), cost) else { return (None, diagnostics) };
-    let graph = Graph { nodes, edges, schedule, records, supports, decisions, cost, runs };
+    let graph = Graph { nodes, edges, schedule, records, supports, decisions, cost, error, runs };
     let faults = faults(&graph);
     diagnostics.extend(faults.iter().map(|fault| Diagnostic::new(Code::E0612, fault.to_string())));
     (faults.is_empty().then_some(graph), diagnostics)

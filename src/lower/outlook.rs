@@ -20,6 +20,8 @@ pub(super) struct Outlook {
     pub axles: [u64; 2],
     /// Passages of each kind of train.
     pub passages: Vec<u64>,
+    /// Sum of the errors of settlement of the blocks, m; 0 for prescribed blocks, because only the run can tell.
+    pub error: f64,
 }
 
 impl Outlook {
@@ -33,7 +35,7 @@ impl Outlook {
 
     fn made(track: &TrackNode, supports: &[SupportNode], law: &Law, blocks: &Blocks) -> Outlook {
         let kinds = blocks.others.len() + 1;
-        let mut outlook = Outlook { blocks: 0, axles: [u64::MAX, 0], passages: vec![0; kinds] };
+        let mut outlook = Outlook { blocks: 0, axles: [u64::MAX, 0], passages: vec![0; kinds], error: 0.0 };
         let mut dry = blocks.adaptive().map(|accuracy| DryRun::new(track, supports, law, blocks, accuracy));
         let mut before = 0;
         while before < blocks.total {
@@ -56,6 +58,7 @@ impl Outlook {
                 None => blocks.block(before, expected),
             };
             outlook.blocks += 1;
+            outlook.error = dry.as_ref().map_or(0.0, |dry| dry.error);
             outlook.axles = [outlook.axles[0].min(block.axles), outlook.axles[1].max(block.axles)];
             before += block.axles;
         }
@@ -70,6 +73,7 @@ impl Outlook {
         let more = |count: &mut u64| *count = (*count as f64 * times.max(1.0)) as u64;
         more(&mut self.blocks);
         self.passages.iter_mut().for_each(more);
+        self.error *= times.max(1.0);
         self
     }
 

@@ -2,7 +2,9 @@
 
 use super::Origins;
 use crate::diag::{Diagnostic, has_errors};
-use crate::graph::{Blocks, Cost, Decision, Edge, Node, PassagePlan, Record, Rejected, Schedule, SupportNode};
+use crate::graph::{
+    Blocks, Cost, Decision, Edge, ExpectedError, Node, PassagePlan, Record, Rejected, Schedule, SupportNode,
+};
 use crate::scenario::Scenario;
 use crate::schema::Reads;
 
@@ -35,6 +37,8 @@ pub trait Pass: Send + Sync {
 pub struct Draft<'a> {
     pub scenario: &'a Scenario,
     pub origins: &'a Origins,
+    /// Elements of the rail between two seats.
+    pub elements_per_bay: u32,
     /// The passage of each kind of train, in the order of the traffic; empty if no train runs.
     pub passages: Vec<PassagePlan>,
     /// The loop over axles, before a tier uses it.
@@ -46,6 +50,8 @@ pub struct Draft<'a> {
     pub bays: Vec<[f64; 2]>,
     /// The name of the tier that was taken.
     pub tier: Option<&'static str>,
+    /// Largest settlement by the law under the forces on the new track, m; `None` without a law.
+    pub settled: Option<f64>,
     /// The support of every seat of a track, as far as it is known from the scene or its layers.
     pub supports: Vec<SupportNode>,
     pub nodes: Vec<Node>,
@@ -53,6 +59,7 @@ pub struct Draft<'a> {
     pub schedule: Option<Schedule>,
     pub records: Vec<Record>,
     pub cost: Option<Cost>,
+    pub error: ExpectedError,
     /// Whether this version can run the plan of the tier.
     pub runs: bool,
     pub decisions: Vec<Decision>,
@@ -66,17 +73,20 @@ impl<'a> Draft<'a> {
         Draft {
             scenario,
             origins,
+            elements_per_bay: *scenario.solve.elements_per_bay,
             passages: Vec::new(),
             blocks: None,
             by_law,
             bays: Vec::new(),
             tier: None,
+            settled: None,
             supports: Vec::new(),
             nodes: Vec::new(),
             edges: Vec::new(),
             schedule: None,
             records: Vec::new(),
             cost: None,
+            error: ExpectedError::default(),
             runs: false,
             decisions: Vec::new(),
             diagnostics: Vec::new(),

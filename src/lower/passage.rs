@@ -1,7 +1,7 @@
 //! Start and end of a passage, and its time steps.
 
 use super::blocks::WITH_TRAINS;
-use super::{Draft, Pass};
+use super::{Draft, Pass, accuracy};
 use crate::diag::{Code, Diagnostic};
 use crate::graph::{AdaptiveSteps, PassagePlan};
 use crate::scenario::{Direction, Given, Loading, Scenario, TimeStep, Train};
@@ -82,8 +82,11 @@ fn plan(draft: &mut Draft<'_>, train: &Train, named: bool) -> Option<PassagePlan
     let (first, scenario) = (draft.decisions.len(), draft.scenario);
     let (left, right) = ends(draft, scenario, train)?;
     let (time_step, adaptive) = match scenario.solve.time_step {
-        TimeStep::Adaptive { tolerance } => varying_steps(draft, scenario, train, *tolerance),
-        _ => (time_step(draft, scenario, train)?, None),
+        TimeStep::Adaptive { tolerance } => varying_steps(draft, train, (*tolerance, LONGEST_STEP)),
+        _ => match accuracy::steps(scenario) {
+            Some(steps) => varying_steps(draft, train, steps),
+            None => (time_step(draft, scenario, train)?, None),
+        },
     };
     for decision in draft.decisions[first..].iter_mut().filter(|_| named) {
         decision.what = format!("train `{}`: {}", train.name, decision.what);
@@ -181,19 +184,14 @@ fn ends(draft: &mut Draft<'_>, scenario: &Scenario, train: &Train) -> Option<(f6
 }
 
 /// Time in which a wheel crosses the shortest element, s.
-fn transit(scenario: &Scenario, train: &Train) -> f64 {
-    let spacing = scenario.track.shortest_bay();
-    spacing / f64::from(*scenario.solve.elements_per_bay) / *train.speed
+fn transit(draft: &Draft<'_>, train: &Train) -> f64 {
+    let spacing = draft.scenario.track.shortest_bay();
+    spacing / f64::from(draft.elements_per_bay) / *train.speed
 }
 
-/// The longest adaptive step, and the parameters of the adaptive steps.
-fn varying_steps(
-    draft: &mut Draft<'_>,
-    scenario: &Scenario,
-    train: &Train,
-    tolerance: f64,
-) -> (f64, Option<AdaptiveSteps>) {
-    let longest = LONGEST_STEP.min(transit(scenario, train) / 4.0);
+/// The longest adaptive step, at most `most` (s), and the parameters of the adaptive steps.
+fn varying_steps(draft: &mut Draft<'_>, train: &Train, (tolerance, most): (f64, f64)) -> (f64, Option<AdaptiveSteps>) {
+    let longest = most.min(transit(draft, train) / 4.0);
     let shortest = longest / f64::from(1u32 << HALVINGS);
     draft.decide(
         "time step",
@@ -204,7 +202,7 @@ fn varying_steps(
 }
 
 fn time_step(draft: &mut Draft<'_>, scenario: &Scenario, train: &Train) -> Option<f64> {
-    let (speed, transit) = (*train.speed, transit(scenario, train));
+    let (speed, transit) = (*train.speed, transit(draft, train));
     let element = transit * speed;
     if let Some(given) = scenario.solve.time_step.fixed() {
         if *given > transit {

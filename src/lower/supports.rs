@@ -30,8 +30,7 @@ impl Pass for Supports {
             Method::StressCone => ["the stress cone", "layered elasticity"],
             Method::LayeredElastic { .. } => ["layered elasticity", "the stress cone"],
         };
-        let rejected =
-            Rejected { what: other.into(), why: "`support_method` selects the other method".into(), seconds: None };
+        let rejected = Rejected::new(other, "`support_method` selects the other method");
         let why = "the layers under these sleepers are known";
         draft.decide_against(self.name(), format!("{what}, by {taken}"), why, vec![rejected]);
     }

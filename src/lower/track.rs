@@ -1,9 +1,8 @@
 //! Converts the track and the trains of the scene to the graph: plain numbers for one rail.
 
+use super::Draft;
 use crate::graph::{Runs, TrackFoot, TrackNode, TrackSeat, TrackSection, Train};
-use crate::scenario::{
-    self, AuxiliaryRailSpan, Beam, Direction, Foot, Piece, Profile, RailEnds, Scenario, Section, Track,
-};
+use crate::scenario::{self, AuxiliaryRailSpan, Beam, Direction, Foot, Piece, Profile, RailEnds, Section, Track};
 use crate::schema::Reads;
 use crate::solvers::track::{self as solver, Motion, Vehicle};
 
@@ -36,8 +35,9 @@ pub(super) const SUPPORTS: Reads = Reads {
     acts_where: "where springs carry the sleepers: under test loads on a rail, or with `substructure = law`",
 };
 
-/// The track node of a scene.
-pub(super) fn track(scenario: &Scenario) -> TrackNode {
+/// The track node of a plan.
+pub(super) fn track(draft: &Draft<'_>) -> TrackNode {
+    let scenario = draft.scenario;
     let track = &scenario.track;
     let beam = *scenario.solve.beam;
     TrackNode {
@@ -53,7 +53,7 @@ pub(super) fn track(scenario: &Scenario) -> TrackNode {
             RailEnds::Absorbing => solver::RailEnds::Absorbing,
         },
         irregularity: track.irregularity.as_ref().map(irregularity).unwrap_or_default(),
-        elements_per_bay: *scenario.solve.elements_per_bay,
+        elements_per_bay: draft.elements_per_bay,
         gravity: *scenario.solve.gravity,
         shortest_bay: track.shortest_bay(),
     }

@@ -64,7 +64,7 @@ impl<'a> LawGround<'a> {
         for load in loads {
             for supports in &mut state.supports[..laws] {
                 for (seat, support) in self.seats.iter().zip(supports) {
-                    support.load(&load.passage.peaks[*seat], load.trains);
+                    support.load(&load.peaks()[*seat], load.trains);
                 }
             }
         }

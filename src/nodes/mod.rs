@@ -13,6 +13,7 @@ mod on_grains;
 mod outcome;
 mod profile;
 mod sampler;
+mod standing;
 mod steps;
 mod track;
 pub mod turns;
@@ -31,11 +32,13 @@ pub use outcome::{
     WheelHistories,
 };
 pub use profile::between;
+pub use standing::StandingForces;
 pub use steps::Steps;
 pub use track::{RUNAWAY, TrackSystem};
 
 use crate::graph::{PointLoad, Responses, Runner};
 use crate::solvers::granular::{Bed, Real};
+use crate::solvers::settlement::Peak;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 
@@ -87,7 +90,21 @@ pub trait Superstructure: Sync {
 #[derive(Debug, Clone, Copy)]
 pub struct Load<'a> {
     pub passage: &'a PassageOutcome,
+    /// Largest forces of its wheels where they have followed the settlement since; index by seat, then by wheel.
+    pub followed: Option<&'a [Vec<Peak>]>,
     pub trains: u64,
+}
+
+impl<'a> Load<'a> {
+    /// Trains with the forces of a passage as it was computed.
+    pub fn new(passage: &'a PassageOutcome, trains: u64) -> Load<'a> {
+        Load { passage, followed: None, trains }
+    }
+
+    /// Largest force of each wheel of a train on the support of every seat.
+    pub fn peaks(&self) -> &'a [Vec<Peak>] {
+        self.followed.unwrap_or(&self.passage.peaks)
+    }
 }
 
 /// Number of bonds between glued grains, by their state.

@@ -1,15 +1,18 @@
 //! The track node at work: its statics and its passages.
 
 use super::sampler::{ForceSampler, Sampler, WheelSampler};
+use super::standing::{StandingBogies, StandingForces};
 use super::steps::{Steps, steps_of_kinds};
 use super::{
     Kept, NodeError, PassageOutcome, RailPoint, Request, SeatOutcome, Superstructure, Unloaded, UnloadedSeat, profile,
 };
-use crate::graph::{Blocks, LoadedPart, PassagePlan, PointLoad, Record, Responses, Runner, TrackNode, Train};
+use crate::graph::{
+    Blocks, LoadedPart, PassagePlan, PointLoad, Record, Responses, Runner, TrackNode, TrackSeat, Train,
+};
 use crate::solvers::settlement::Peak;
 use crate::solvers::track::{Envelope, Loads, Run, StaticState, Track, TrackError, TrackLevel, solve_static};
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A track on its ground, meshed, its time steps factored once for all passages.
 pub struct TrackSystem<'a> {
@@ -25,6 +28,8 @@ struct Built {
     track: Arc<Track>,
     /// Steps in time, for each kind of train.
     steps: Vec<Arc<Steps>>,
+    /// Standing bogies, from the first time that somebody asks for their forces.
+    bogies: OnceLock<Result<StandingBogies, TrackError>>,
 }
 
 /// Seats whose mean stands for those near the ends of the model, see [`TrackSystem::complete`].
@@ -42,6 +47,33 @@ impl<'a> TrackSystem<'a> {
 
     fn built(&self) -> Result<&Built, NodeError> {
         self.built.as_ref().ok_or(NodeError::NoGround)
+    }
+
+    /// Forces of standing bogies on a settlement of every seat (m).
+    pub fn standing(&self, settlement: &[f64]) -> Result<StandingForces, NodeError> {
+        Ok(self.bogies()?.forces(settlement)?)
+    }
+
+    fn bogies(&self) -> Result<&StandingBogies, NodeError> {
+        let (built, blocks) = (self.built()?, self.blocks.ok_or(NodeError::NoTrain)?);
+        let bogies = built.bogies.get_or_init(|| StandingBogies::new(self.node, &built.responses, blocks));
+        bogies.as_ref().map_err(|error| error.clone().into())
+    }
+
+    /// Peak forces of a passage after the settlement under it has changed, and with it the forces of standing bogies.
+    pub fn follow(
+        &self,
+        kind: usize,
+        passage: &PassageOutcome,
+        [from, to]: [&StandingForces; 2],
+    ) -> Result<Vec<Vec<Peak>>, NodeError> {
+        let blocks = self.blocks.ok_or(NodeError::NoTrain)?;
+        let mut peaks = self.bogies()?.follow(kind, &passage.peaks, from, to);
+        let (train, plan) = blocks.kind(kind);
+        for (seat, sources) in self.incomplete(plan.passed(train)) {
+            peaks[seat] = mean_peaks(&peaks, &sources);
+        }
+        Ok(peaks)
     }
 
     fn at_rest(&self, state: &StaticState, settlement: &[f64], Built { track, responses, .. }: &Built) -> Unloaded {
@@ -64,7 +96,7 @@ impl<'a> TrackSystem<'a> {
         let Request { axles, settlement, runner, kept, forces } = request;
         let blocks = self.blocks.ok_or(NodeError::NoTrain)?;
         let built = self.built()?;
-        let Built { responses, track, steps } = built;
+        let Built { responses, track, steps, .. } = built;
         let Runner { kind, direction } = runner;
         let ((train, plan), steps) = (blocks.kind(kind), &steps[kind]);
         let model = train.model(direction);
@@ -159,24 +191,10 @@ impl<'a> TrackSystem<'a> {
     /// Otherwise a false step in the settlement would grow at the start of the trains. A section without such a seat
     /// keeps its own values.
     fn complete(&self, passed: Range<f64>, outcomes: &mut [SeatOutcome], peaks: &mut [Vec<Peak>]) {
-        let seats = &self.node.seats;
-        for (i, seat) in seats.iter().enumerate().filter(|(_, s)| !passed.contains(&s.x)) {
-            let whole = |n: &usize| seats[*n].section == seat.section && passed.contains(&seats[*n].x);
-            let from: Vec<usize> = if seat.x < passed.start {
-                (0..seats.len()).filter(whole).take(NEIGHBOURS).collect()
-            } else {
-                (0..seats.len()).rev().filter(whole).take(NEIGHBOURS).collect()
-            };
-            if from.is_empty() {
-                continue;
-            }
+        for (seat, from) in self.incomplete(passed) {
             let mean = |of: &dyn Fn(usize) -> f64| from.iter().map(|n| of(*n)).sum::<f64>() / from.len() as f64;
-            let mean_peak = |wheel: usize| Peak {
-                force: mean(&|n| peaks[n][wheel].force),
-                deflection: mean(&|n| peaks[n][wheel].deflection),
-            };
-            peaks[i] = (0..peaks[i].len()).map(mean_peak).collect();
-            outcomes[i] = SeatOutcome {
+            peaks[seat] = mean_peaks(peaks, &from);
+            outcomes[seat] = SeatOutcome {
                 max_rail_seat_load: mean(&|n| outcomes[n].max_rail_seat_load),
                 max_contact_force: mean(&|n| outcomes[n].max_contact_force),
                 max_sleeper_displacement: mean(&|n| outcomes[n].max_sleeper_displacement),
@@ -184,6 +202,31 @@ impl<'a> TrackSystem<'a> {
             };
         }
     }
+
+    /// Seats that not every wheel passes, each with the seats whose mean it takes.
+    fn incomplete(&self, passed: Range<f64>) -> Vec<(usize, Vec<usize>)> {
+        let seats = &self.node.seats;
+        let sources = |(i, seat): (usize, &TrackSeat)| {
+            let whole = |n: &usize| seats[*n].section == seat.section && passed.contains(&seats[*n].x);
+            let from: Vec<usize> = if seat.x < passed.start {
+                (0..seats.len()).filter(whole).take(NEIGHBOURS).collect()
+            } else {
+                (0..seats.len()).rev().filter(whole).take(NEIGHBOURS).collect()
+            };
+            (!from.is_empty()).then_some((i, from))
+        };
+        seats.iter().enumerate().filter(|(_, seat)| !passed.contains(&seat.x)).filter_map(sources).collect()
+    }
+}
+
+/// The mean of the peak forces of some seats, wheel by wheel.
+fn mean_peaks(peaks: &[Vec<Peak>], from: &[usize]) -> Vec<Peak> {
+    let mean = |of: &dyn Fn(usize) -> f64| from.iter().map(|n| of(*n)).sum::<f64>() / from.len() as f64;
+    let of_wheel = |wheel: usize| Peak {
+        force: mean(&|n| peaks[n][wheel].force),
+        deflection: mean(&|n| peaks[n][wheel].deflection),
+    };
+    (0..peaks[from[0]].len()).map(of_wheel).collect()
 }
 
 /// Extremes of every seat over a passage, and the largest force of each wheel of the train on its support.
@@ -209,7 +252,7 @@ impl Superstructure for TrackSystem<'_> {
         }
         let track = Arc::new(Track::new(self.node.model(responses))?);
         let steps = self.blocks.map(|blocks| steps_of_kinds(blocks, &track)).transpose()?.unwrap_or_default();
-        self.built = Some(Built { responses: responses.clone(), track, steps });
+        self.built = Some(Built { responses: responses.clone(), track, steps, bogies: OnceLock::new() });
         Ok(())
     }
 

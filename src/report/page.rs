@@ -12,6 +12,7 @@ use super::{Figure, figures, laws};
 use crate::graph::Clock;
 use crate::results::{Provenance, Run, SoFar, Verdict};
 use crate::scenario::{Loading, Scenario, Train};
+use crate::units::duration;
 use std::fmt::Write;
 
 /// Makes the whole page.
@@ -40,15 +41,6 @@ pub fn standing(so_far: &SoFar) -> String {
     let stage = so_far.stage.as_ref();
     let now = stage.map_or(String::new(), |(what, share)| format!("; now {what}, {} % done", plain(100.0 * share, 2)));
     format!("{done} after {} of computing{now}", duration(so_far.seconds))
-}
-
-/// `40 s`, `12 min`, `3.4 h`
-fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 120.0 => format!("{} s", plain(s, 2)),
-        s if s < 7200.0 => format!("{} min", plain(s / 60.0, 2)),
-        s => format!("{} h", plain(s / 3600.0, 2)),
-    }
 }
 
 fn page_with(run: &Run, notice: &str) -> String {

@@ -50,6 +50,17 @@ pub enum Tier {
 }
 
 impl Tier {
+    /// The word of the tier in a scene.
+    pub fn name(self) -> &'static str {
+        match self {
+            Tier::Auto => "auto",
+            Tier::Law => "law",
+            Tier::Cells => "cells",
+            Tier::Zone => "zone",
+            Tier::Full => "full",
+        }
+    }
+
     /// Whether the tier uses grains.
     pub fn has_grains(self) -> bool {
         matches!(self, Tier::Cells | Tier::Zone | Tier::Full)
@@ -78,7 +89,7 @@ pub struct Grains {
     /// Size of the soil elements, m; `None` if the planner chooses it.
     pub soil_element: Option<Given>,
     /// Error that the planner may make / largest settlement.
-    pub tolerance: f64,
+    pub tolerance: Given,
     /// Longest time that the run may take, s.
     pub budget: Option<Given>,
     /// Largest memory that the run may take, bytes.
@@ -101,7 +112,7 @@ impl Default for Grains {
             cell_bays: 1,
             step: None,
             soil_element: None,
-            tolerance: 0.05,
+            tolerance: Given { value: 0.05, origin: Origin::Default },
             budget: None,
             memory: None,
             both_rails: false,

@@ -758,13 +758,13 @@ pub const KINDS: &[Kind] = &[
                 "tolerance",
                 number("%", 0.1, 50.0),
                 "5 %",
-                "`zone`: sleepers get grains if they settle otherwise than the far field by more than this share of the largest settlement; `cells`: alike sleepers share a cell if their settlements differ by at most twice this share, and a cell leaves out trains if the error is below this share of its settlement",
+                "error of settlement / largest settlement that the planner may make. By a law: blocks, steps and elements that the scene does not state follow from it, if it is stated; `auto` with a `budget`: the cheapest model of the ground within it; `zone`: sleepers get grains if they settle otherwise than the far field by more than this share of the largest settlement; `cells`: alike sleepers share a cell if their settlements differ by at most twice this share, and a cell leaves out trains if the error is below this share of its settlement",
             ),
             default(
                 "budget",
                 Form::OneOf(&[number("min", 0.01, 1e6), Form::Words(NONE)]),
                 "none",
-                "longest time that the run may take",
+                "longest time that the run may take; with it `substructure = auto` may choose grains",
             ),
             default(
                 "memory",

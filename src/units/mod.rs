@@ -8,11 +8,13 @@ mod dimension;
 mod foreign;
 mod parse;
 mod usual;
+mod words;
 
 pub use compare::compare;
 pub use dimension::Dimension;
 pub use parse::{Unit, UnitError, parse_unit};
 pub use usual::usual_units;
+pub use words::{duration, percent};
 
 /// A number in SI units with its dimension.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,6 +53,12 @@ pub fn number(value: f64) -> String {
         return format!("{}e{exponent}", trim(mantissa));
     }
     trim(&format!("{value:.*}", (5 - magnitude).max(0) as usize)).to_string()
+}
+
+/// A positive value with two digits, never more than the value.
+pub fn rounded_down(value: f64) -> f64 {
+    let size = 10f64.powf(1.0 - value.log10().floor());
+    (value * size).floor() / size
 }
 
 fn trim(text: &str) -> &str {

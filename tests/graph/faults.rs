@@ -26,6 +26,7 @@ fn by_hand(nodes: Vec<Node>, edges: Vec<Edge>) -> Graph {
         records: Vec::new(),
         supports: Vec::new(),
         decisions: Vec::new(),
+        error: ExpectedError::default(),
         cost: Cost { seconds: 0.0, seconds_on_two_cores: 0.0, bytes: 0, work },
         runs: true,
     }

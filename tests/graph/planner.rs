@@ -7,8 +7,8 @@ use std::sync::Arc;
 use trackbed::check::{NoModules, Override};
 use trackbed::compile::{Compiled, compile_with};
 use trackbed::diag::Code;
-use trackbed::graph::{Cost, Edge, Graph, Model, Schedule};
-use trackbed::lower::{self, Draft, ExpectedError, Pass, Planner, Proposal, Tier};
+use trackbed::graph::{Cost, Edge, ExpectedError, Graph, Model, Schedule};
+use trackbed::lower::{self, Draft, Pass, Planner, Proposal, Tier};
 
 /// Proposes the ground of the test wherever trains run; for so many seconds.
 struct SinkingTier(f64);
@@ -29,7 +29,7 @@ impl Tier for SinkingTier {
             cost: Cost { seconds: self.0, seconds_on_two_cores: self.0, ..cost },
             what: "the same settlement everywhere".into(),
             why: "a test asks for it".into(),
-            error: ExpectedError { share: Some(0.5), evidence: "a guess".into() },
+            error: ExpectedError { of_tier: Some(0.5), evidence: "a guess".into(), ..ExpectedError::default() },
             runs: true,
             refusals: Vec::new(),
         })

@@ -116,7 +116,7 @@ pub fn grains(record: &Record, places: Option<&Places>, findings: &mut Findings)
         cell_bays: record.number("cell_bays")?.value as u32,
         step: optional("grain_step")?,
         soil_element: optional("soil_element")?,
-        tolerance: record.number("tolerance")?.value,
+        tolerance: given(record, "tolerance")?,
         budget: optional("budget")?,
         memory: optional("memory")?,
         both_rails: record.word("symmetry")? == "full",

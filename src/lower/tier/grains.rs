@@ -2,11 +2,11 @@
 
 use super::soil::{self, soil};
 use super::volumes::{self, volumes};
-use super::{ExpectedError, Proposal, Tier, edges, refused, waiting};
+use super::{Proposal, Tier, edges, refused, waiting};
 use crate::diag::{Diagnostic, Severity};
 use crate::graph::{
-    BedPlan, Blocks, GrainStretch, GrainsNode, Model, Node, Passing, PointLoad, Schedule, SleeperOnGrains,
-    StiffnessFrom, Update,
+    BedPlan, Blocks, ExpectedError, GrainStretch, GrainsNode, Model, Node, Passing, PointLoad, Schedule,
+    SleeperOnGrains, StiffnessFrom, Update,
 };
 use crate::lower::bays::{differing, wanted};
 use crate::lower::bed::{self, BedUse, beds, beds_of_spheres};
@@ -52,6 +52,11 @@ const JOINED: Reads = Reads {
 /// Fields that both tiers read.
 const ALL: &[&Reads] = &[&track::READS, &bed::READS, &bed::VOLUMES, &READS, &JOINED];
 
+/// Largest errors / settlement on packings of `transition_short.track` (docs/validation.md, "The shortened scene in every
+/// tier"): by grains in some bays only, and by exchanges of forces and settlement after every train and after 20 axles.
+const OF_ZONE: f64 = 0.21;
+const OF_COUPLING: [f64; 2] = [0.01, 0.06];
+
 impl Tier for Zone {
     fn name(&self) -> &'static str {
         "zone"
@@ -69,7 +74,14 @@ impl Tier for Zone {
             Some(settlement) => differing(draft.scenario, settlement),
             None => wanted(draft.scenario),
         };
-        propose(draft, "grains under the bays that differ from the far field", windows)
+        let of_zone = ExpectedError {
+            of_tier: Some(OF_ZONE + of_coupling(draft)),
+            evidence: "with grains under six bays instead of ten, the far field of two packings of a dense bed differs by 1.6 \
+                       and 6.1 um, at most 21 % of the largest settlement"
+                .into(),
+            ..ExpectedError::default()
+        };
+        propose(draft, "grains under the bays that differ from the far field", windows, of_zone)
     }
 }
 
@@ -83,11 +95,28 @@ impl Tier for Full {
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
-        propose(draft, "grains under the whole window", wanted(draft.scenario))
+        let of_full = ExpectedError {
+            of_tier: Some(of_coupling(draft)),
+            evidence: "against vehicles that run over the grains, exchanges after every train change the settlement of two packings \
+                       by 1 %, after 20 axles by 1 to 6 %; another packing changes it by 10 to 20 %"
+                .into(),
+            ..ExpectedError::default()
+        };
+        propose(draft, "grains under the whole window", wanted(draft.scenario), of_full)
     }
 }
 
-fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>) -> Result<Proposal, String> {
+/// Error by the exchange of forces and settlement in turn / settlement; vehicles that run over the grains have none.
+fn of_coupling(draft: &Draft<'_>) -> f64 {
+    let every_train = |blocks: &Blocks| blocks.wanted(0) == Some(1) || blocks.adaptive().is_some();
+    match &draft.blocks {
+        _ if draft.scenario.solve.grains.monolithic => 0.0,
+        Some(blocks) if every_train(blocks) => OF_COUPLING[0],
+        _ => OF_COUPLING[1],
+    }
+}
+
+fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, error: ExpectedError) -> Result<Proposal, String> {
     let scenario = draft.scenario;
     if !scenario.track.has_rails() {
         return Err("there are no rails".into());
@@ -152,7 +181,7 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>) -> Result<Prop
         added_inertia: ADDED,
     };
     let ridden = scenario.solve.grains.monolithic;
-    let mut track = Box::new(track::track(scenario));
+    let mut track = Box::new(track::track(draft));
     if ridden && track.rail_ends == RailEnds::Clamped {
         // wheels that come over a clamped end drop from its level, and the load on the first ten seats oscillates by
         // three quarters
@@ -172,7 +201,7 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>) -> Result<Prop
         cost,
         what: what.into(),
         why: "the scene asks for grains".into(),
-        error: ExpectedError { share: None, evidence: "its error is not measured yet".into() },
+        error,
         runs: runs && refusals.is_empty(),
         refusals,
     })

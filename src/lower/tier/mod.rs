@@ -22,7 +22,7 @@ pub use rig::TestRig;
 
 use super::{Draft, Pass};
 use crate::diag::{Diagnostic, has_errors};
-use crate::graph::{Cost, Edge, Node, Quantity, Rejected, Schedule};
+use crate::graph::{Cost, Edge, ExpectedError, Node, Quantity, Rejected, Schedule};
 use crate::scenario;
 use crate::schema::Reads;
 
@@ -61,15 +61,6 @@ pub struct Proposal {
     pub refusals: Vec<Diagnostic>,
 }
 
-/// Expected error of a tier.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ExpectedError {
-    /// Error / largest settlement; `None` if it has not been measured.
-    pub share: Option<f64>,
-    /// The evidence for this share.
-    pub evidence: String,
-}
-
 /// Asks every tier and takes the cheapest that can run.
 pub(super) struct ChooseTier<'t>(pub &'t [Box<dyn Tier>]);
 
@@ -79,14 +70,17 @@ impl Pass for ChooseTier<'_> {
     }
 
     fn run(&self, draft: &mut Draft<'_>) {
-        let word = asked(*draft.scenario.solve.grains.tier);
+        // with `auto` the planner chooses
+        let word = Some(*draft.scenario.solve.grains.tier)
+            .filter(|tier| *tier != scenario::Tier::Auto)
+            .map(scenario::Tier::name);
         let mut rejected = Vec::new();
         let mut offers: Vec<(&'static str, Proposal)> = Vec::new();
         for tier in self.0 {
             match tier.propose(draft) {
                 Ok(proposal) if word.is_none_or(|word| tier.answers(word)) => offers.push((tier.name(), proposal)),
                 Ok(proposal) => rejected.push(not_asked(tier.name(), &proposal)),
-                Err(why) => rejected.push(Rejected { what: tier.name().into(), why, seconds: None }),
+                Err(why) => rejected.push(Rejected::new(tier.name(), why)),
             }
         }
         // plans that can run come first, then the cheapest; equal plans keep the order of the tiers
@@ -109,38 +103,28 @@ impl Pass for ChooseTier<'_> {
 }
 
 fn take(draft: &mut Draft<'_>, taken: Proposal, rejected: Vec<Rejected>) {
-    let Proposal { nodes, edges, schedule, cost, what, why, refusals, runs, .. } = taken;
+    let Proposal { nodes, edges, schedule, cost, what, why, error, refusals, runs } = taken;
     draft.refusals = refusals;
-    (draft.nodes, draft.edges) = (nodes, edges);
+    (draft.nodes, draft.edges, draft.error) = (nodes, edges, error);
     (draft.schedule, draft.cost) = (Some(schedule), Some(cost));
     // a plan with an error is shown but not run, even if its tier can run it
     draft.runs = runs && !has_errors(&draft.refusals);
     draft.decide_against("tier", what, why, rejected);
 }
 
-/// The word of a tier; with `None` the planner chooses.
-fn asked(tier: scenario::Tier) -> Option<&'static str> {
-    match tier {
-        scenario::Tier::Auto => None,
-        scenario::Tier::Law => Some("law"),
-        scenario::Tier::Cells => Some("cells"),
-        scenario::Tier::Zone => Some("zone"),
-        scenario::Tier::Full => Some("full"),
-    }
-}
-
 fn not_asked(name: &str, proposal: &Proposal) -> Rejected {
     let why = "the scene asks for another tier".to_owned();
-    Rejected { what: name.into(), why, seconds: Some(proposal.cost.seconds_on_two_cores) }
+    offered(name, why, proposal)
 }
 
 fn dearer(name: &str, proposal: &Proposal) -> Rejected {
     let why = if proposal.runs { "it costs more" } else { "this version cannot run it yet" };
-    let error = match proposal.error.share {
-        Some(share) => format!("{why}; error about {} % ({})", (100.0 * share).round(), proposal.error.evidence),
-        None => format!("{why}; {}", proposal.error.evidence),
-    };
-    Rejected { what: name.into(), why: error, seconds: Some(proposal.cost.seconds_on_two_cores) }
+    offered(name, why.to_owned(), proposal)
+}
+
+fn offered(name: &str, why: String, proposal: &Proposal) -> Rejected {
+    let seconds = Some(proposal.cost.seconds_on_two_cores);
+    Rejected { seconds, error: proposal.error.share(), ..Rejected::new(name, why) }
 }
 
 /// Edges for all quantities that one node takes and another node gives.

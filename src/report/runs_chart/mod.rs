@@ -4,11 +4,12 @@ mod picture;
 
 pub use picture::runs_chart_svg;
 
-use super::number::{plain, significant};
+use super::number::plain;
 use super::page::{close, opening};
 use super::prose::prose;
 use super::table::{TABLE_END, row, table_head};
 use crate::trials::runs::{Ended, RunChart, RunErrors, RunRow};
+use crate::units::{duration, percent};
 use std::fmt::Write;
 
 /// The whole page.
@@ -32,9 +33,9 @@ pub fn runs_chart_page(chart: &RunChart) -> String {
 
 fn subtitle(chart: &RunChart) -> String {
     let mut text =
-        format!("{} axles. Reference: `{}`, which took {}", chart.axles, chart.reference, time(chart.took.seconds));
+        format!("{} axles. Reference: `{}`, which took {}", chart.axles, chart.reference, duration(chart.took.seconds));
     if chart.took.build_s > 0.0 {
-        let _ = write!(text, ", {} of it until the first train", time(chart.took.build_s));
+        let _ = write!(text, ", {} of it until the first train", duration(chart.took.build_s));
     }
     text += ". ";
     if chart.span.iter().all(|x| x.is_finite()) {
@@ -53,7 +54,7 @@ fn subtitle(chart: &RunChart) -> String {
             " The fastest run with a settlement error of at most {}: `{}`, {}.",
             percent(chart.tolerance),
             row.variant.name,
-            time(done.took.seconds)
+            duration(done.took.seconds)
         );
     }
     text.trim_end().to_owned()
@@ -81,11 +82,11 @@ fn table(chart: &RunChart) -> String {
 
 fn cells(run: &RunRow) -> Vec<String> {
     let edits: Vec<String> = run.variant.edits.iter().map(|e| format!("{} = {}", e.path, e.value)).collect();
-    let estimated = run.estimated_s.map_or("-".to_owned(), time);
+    let estimated = run.estimated_s.map_or("-".to_owned(), duration);
     let mut cells = vec![estimated];
     match &run.ended {
         Ended::Done(done) => {
-            cells.extend([time(done.took.seconds), time(done.took.build_s)]);
+            cells.extend([duration(done.took.seconds), duration(done.took.build_s)]);
             cells.extend(RunErrors::ALL.map(|(_, _, read)| read(&done.errors).map_or("-".to_owned(), percent)));
         }
         Ended::LeftOut => cells.push("left out".to_owned()),
@@ -94,17 +95,4 @@ fn cells(run: &RunRow) -> Vec<String> {
     cells.resize(3 + RunErrors::ALL.len(), "-".to_owned());
     cells.push(edits.join(", "));
     cells
-}
-
-fn percent(share: f64) -> String {
-    format!("{} %", significant(100.0 * share, 2))
-}
-
-/// `3.1 s`, `12 min`, `2.4 h`
-fn time(seconds: f64) -> String {
-    match seconds {
-        s if s < 90.0 => format!("{} s", significant(s, 2)),
-        s if s < 5400.0 => format!("{} min", significant(s / 60.0, 2)),
-        s => format!("{} h", significant(s / 3600.0, 2)),
-    }
 }

@@ -1,8 +1,8 @@
 //! Error of whole runs against their time: one panel for each quantity, both scales logarithmic.
 
-use super::{percent, time};
 use crate::report::svg::{Anchor, Frame, Svg, text_width};
 use crate::trials::runs::{Done, Group, RunChart, RunErrors, RunRow};
+use crate::units::{duration, percent};
 
 const WIDTH: f64 = 1080.0;
 const PANEL: (f64, f64) = (500.0, 330.0);
@@ -26,7 +26,7 @@ pub fn runs_chart_svg(chart: &RunChart) -> String {
         "{} axles. Reference: {}, {}. Open marks are the scene's own settings.",
         chart.axles,
         chart.reference,
-        time(chart.took.seconds)
+        duration(chart.took.seconds)
     );
     svg.text("small muted", (16.0, 42.0), Anchor::Start, &under);
     legend(&mut svg, chart);
@@ -91,7 +91,7 @@ impl Plane {
         for seconds in TIMES.into_iter().filter(|s| (low..high).contains(&s.log10())) {
             let x = self.point(seconds, 1.0).0;
             svg.line("grid", (x, f.y), (x, bottom));
-            svg.text("small muted", (x, bottom + 16.0), Anchor::Middle, &time(seconds));
+            svg.text("small muted", (x, bottom + 16.0), Anchor::Middle, &duration(seconds));
         }
         svg.line("axis", (f.x, bottom), (right, bottom));
         svg.line("axis", (f.x, f.y), (f.x, bottom));
@@ -124,7 +124,7 @@ fn panel(svg: &mut Svg, chart: &RunChart, (index, name, read): (usize, &str, Rea
     let mut taken: Vec<Frame> = rows.iter().map(mark).collect();
     for (row, (seconds, error)) in rows {
         let at = plane.point(seconds, error);
-        let title = format!("{}: {} in {}", row.variant.name, percent(error), time(seconds));
+        let title = format!("{}: {} in {}", row.variant.name, percent(error), duration(seconds));
         marker(svg, row.variant.group, at, &title);
         label(svg, &row.variant.name, at, inner, &mut taken);
     }

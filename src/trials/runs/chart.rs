@@ -99,7 +99,7 @@ impl RunChart {
             shortened: shortened.to_vec(),
             reference: reference.name.clone(),
             took,
-            tolerance: run.scenario.solve.grains.tolerance,
+            tolerance: *run.scenario.solve.grains.tolerance,
             span,
             rows,
         }

@@ -1,0 +1,93 @@
+//! The tier of a scene with `substructure = auto` and a `budget`: the cheapest one whose expected error is within the
+//! `tolerance`, or else the most accurate one that the `budget` and the `memory` allow.
+//!
+//! Without a budget `auto` never takes grains: they take hours.
+
+use super::by_law;
+use crate::diag::has_errors;
+use crate::graph::{Decision, Graph, Rejected};
+use crate::lower::Planner;
+use crate::scenario::{Given, Grains, Loading, Scenario, Tier};
+use crate::units::{duration, number};
+
+/// The scene with the tier that was taken, and the decision for its plan.
+pub struct Taken {
+    pub scenario: Scenario,
+    pub decision: Decision,
+}
+
+/// A tier that can run the scene.
+struct Offer {
+    tier: Tier,
+    seconds: f64,
+    bytes: f64,
+    /// Expected error / largest settlement.
+    error: f64,
+}
+
+/// Chooses the tier; `None` if the scene leaves no choice.
+pub fn tier(planner: &Planner, scenario: &Scenario) -> Option<Taken> {
+    let grains = &scenario.solve.grains;
+    let budget = *grains.budget?;
+    if *grains.tier != Tier::Auto || !matches!(scenario.loading, Some(Loading::Traffic(_))) {
+        return None;
+    }
+    let offers: Vec<Offer> = [Tier::Law, Tier::Cells, Tier::Zone, Tier::Full]
+        .into_iter()
+        .filter_map(|tier| offer(planner, scenario, tier))
+        .collect();
+    let fits = |offer: &&Offer| offer.seconds <= budget && grains.memory.is_none_or(|memory| offer.bytes <= *memory);
+    let accurate = |offer: &&Offer| offer.error <= *grains.tolerance;
+    let cheapest = |a: &&Offer, b: &&Offer| a.seconds.total_cmp(&b.seconds);
+    let (taken, why) = if let Some(offer) = offers.iter().filter(fits).filter(accurate).min_by(cheapest) {
+        (offer, "it is the cheapest tier with an expected error within the `tolerance`".to_owned())
+    } else if let Some(offer) = offers.iter().filter(fits).min_by(|a, b| a.error.total_cmp(&b.error)) {
+        (offer, format!("it has the smallest expected error within the budget of {}", duration(budget)))
+    } else {
+        let offer = offers.iter().min_by(cheapest)?;
+        let missing = duration(offer.seconds - budget);
+        (
+            offer,
+            format!(
+                "nothing fits the budget of {} and the memory; the cheapest tier misses the budget by {missing}",
+                duration(budget)
+            ),
+        )
+    };
+    let others = offers.iter().filter(|offer| offer.tier != taken.tier);
+    let rejected = others.map(|offer| rejected(offer, grains, budget)).collect();
+    let what = format!("`substructure = {}`", taken.tier.name());
+    let decision = Decision { pass: "budget".into(), what, why, rejected };
+    Some(Taken { scenario: with(scenario, taken.tier), decision })
+}
+
+fn with(scenario: &Scenario, tier: Tier) -> Scenario {
+    let mut of_tier = scenario.clone();
+    of_tier.solve.grains.tier = Given::derived(tier);
+    of_tier
+}
+
+/// The plan of a tier, if it can run; a tier without a known error is at the end of the choice.
+fn offer(planner: &Planner, scenario: &Scenario, tier: Tier) -> Option<Offer> {
+    let of_tier = with(scenario, tier);
+    let by_law = by_law::settlement(planner, &of_tier);
+    let lowered = planner.lower_with(&of_tier, by_law.as_deref());
+    let graph: Graph = lowered.graph.filter(|graph| graph.runs && !has_errors(&lowered.diagnostics))?;
+    let (seconds, bytes) = (graph.cost.seconds_on_two_cores, graph.cost.bytes as f64);
+    Some(Offer { tier, seconds, bytes, error: graph.error.share().unwrap_or(0.0) })
+}
+
+fn rejected(offer: &Offer, grains: &Grains, budget: f64) -> Rejected {
+    let memory = grains.memory.filter(|memory| offer.bytes > **memory);
+    let why = if offer.seconds > budget {
+        format!("it misses the budget of {} by {}", duration(budget), duration(offer.seconds - budget))
+    } else if let Some(memory) = memory {
+        let mib = |bytes: f64| number((bytes / f64::from(1 << 20)).ceil());
+        format!("it needs {} MiB, more than the limit of {} MiB", mib(offer.bytes), mib(*memory))
+    } else if offer.error > *grains.tolerance {
+        "its expected error is above the `tolerance`".to_owned()
+    } else {
+        "it costs more".to_owned()
+    };
+    Rejected { seconds: Some(offer.seconds), error: Some(offer.error), ..Rejected::new(offer.tier.name(), why) }
+}

@@ -1,0 +1,157 @@
+//! Mesh, time steps and blocks that follow from the `tolerance` of a scene: as coarse as this error of settlement
+//! allows, where the scene does not state them. A scene without `tolerance` has the fine settings of the language.
+//!
+//! The constants are read from whole runs, `trackbed chart FILE --of run` (docs/validation.md, "Whole runs").
+
+use super::dry_run::as_built;
+use super::outlook::Outlook;
+use super::{Draft, Pass, track};
+use crate::graph::{Blocks, PassagePlan, Rejected, Update};
+use crate::scenario::{Beam, Loading, Origin, Scenario, TimeStep};
+use crate::schema::Reads;
+use crate::units::{number, rounded_down};
+
+/// Elements a bay of a rail without shear: two of them change wheel forces, seat loads and rail moments by at most
+/// 0.2 %; a single one misses the rail moment by 11 %.
+const ELEMENTS: u32 = 2;
+/// Least tolerance for which they are enough.
+const COARSE: f64 = 0.005;
+
+/// Error at the end of a run / sum of the errors of its blocks on a track at rest: the error of a block is known for
+/// the forces of its start, and the result has the forces of its middle.
+const OF_BLOCKS: f64 = 0.25;
+/// Error / largest settlement by the dynamic part of the forces, which does not follow the settlement within a block:
+/// at most half of the error limit of a block, and no more than this (`benches/tolerances.py`).
+const OF_DYNAMICS: f64 = 1.5e-3;
+
+/// Error of a step / tolerance, and the longest step at a tolerance of 1 %, s. The error of forces grows with the
+/// square of the step.
+const OF_STEPS: f64 = 0.02;
+const LONGEST: f64 = 4e-4;
+/// The longest step at any tolerance, s: an eighth of the period of a sleeper between pad and support.
+const ANY_LONGEST: f64 = 8e-4;
+
+/// The field that all other settings follow from.
+const READS: Reads = Reads {
+    fields: &["solve.tolerance"],
+    acts_where: "where trains run and `solve` does not state `update_every`, `time_step` or `elements_per_bay`",
+};
+
+/// The error of settlement / largest settlement that the scene allows, if it states one. Passages over grains cost
+/// little beside the grains and keep their fine settings.
+fn stated(scenario: &Scenario) -> Option<f64> {
+    let grains = &scenario.solve.grains;
+    let is_stated = grains.tolerance.origin != Origin::Default && !grains.tier.has_grains();
+    (is_stated && matches!(scenario.loading, Some(Loading::Traffic(_)))).then_some(*grains.tolerance)
+}
+
+/// Tolerance of a step and the longest step (s) of a scene that states a tolerance and no step.
+pub(super) fn steps(scenario: &Scenario) -> Option<(f64, f64)> {
+    let tolerance = stated(scenario).filter(|_| scenario.solve.time_step == TimeStep::Auto)?;
+    Some((OF_STEPS * tolerance, ANY_LONGEST.min(LONGEST * (tolerance / 0.01).sqrt())))
+}
+
+/// Expected error of a run by a law / its largest settlement, by blocks and steps; `None` if the blocks are prescribed,
+/// because only the run can tell their error.
+pub(super) fn expected(draft: &Draft<'_>, blocks: &Blocks, outlook: &Outlook) -> Option<f64> {
+    let (limit, _) = blocks.adaptive()?;
+    let settled = draft.settled.filter(|settled| *settled > 0.0)?;
+    let of_steps = |plan: &PassagePlan| match plan.adaptive {
+        Some(steps) => 0.2 * steps.tolerance,
+        None => 0.2 * OF_STEPS * 0.01 * (plan.time_step / LONGEST).powi(2),
+    };
+    let steps = blocks.kinds().map(|(_, plan)| of_steps(plan)).fold(0.0, f64::max);
+    Some(OF_BLOCKS * outlook.error / settled + OF_DYNAMICS.min(0.5 * limit / settled) + steps)
+}
+
+/// Chooses the elements of the rail.
+pub(super) struct Mesh;
+
+impl Mesh {
+    fn elements(scenario: &Scenario) -> Option<u32> {
+        let solve = &scenario.solve;
+        let is_open = solve.elements_per_bay.origin == Origin::Default;
+        // a rail with shear has a kink over each seat, and short waves of the level need short elements
+        let is_smooth = *solve.beam == Beam::Euler && scenario.track.irregularity.is_none();
+        (is_open && is_smooth && stated(scenario)? >= COARSE).then_some(ELEMENTS)
+    }
+}
+
+impl Pass for Mesh {
+    fn name(&self) -> &'static str {
+        "mesh"
+    }
+
+    fn reads(&self) -> &'static [&'static Reads] {
+        &[&READS]
+    }
+
+    fn acts(&self, scenario: &Scenario) -> bool {
+        Mesh::elements(scenario).is_some()
+    }
+
+    fn run(&self, draft: &mut Draft<'_>) {
+        let Some(elements) = Mesh::elements(draft.scenario) else { return };
+        let fine = draft.elements_per_bay;
+        draft.elements_per_bay = elements;
+        let rejected = Rejected::new(format!("{fine} elements per bay"), "they change forces by less than 0.2 %");
+        let why = "the scene states a `tolerance`, and the rail bends without shear on a smooth level";
+        draft.decide_against(self.name(), format!("{elements} elements per bay"), why, vec![rejected]);
+    }
+
+    fn without(&self) -> Option<fn(&mut Draft<'_>)> {
+        Some(|_| ())
+    }
+}
+
+/// Chooses the error of a block at which forces and settlement are exchanged.
+pub(super) struct Exchange;
+
+impl Exchange {
+    fn tolerance(scenario: &Scenario) -> Option<f64> {
+        stated(scenario).filter(|_| scenario.solve.update_span.is_none())
+    }
+}
+
+impl Pass for Exchange {
+    fn name(&self) -> &'static str {
+        "exchange"
+    }
+
+    fn reads(&self) -> &'static [&'static Reads] {
+        &[&READS]
+    }
+
+    fn acts(&self, scenario: &Scenario) -> bool {
+        Exchange::tolerance(scenario).is_some()
+    }
+
+    fn run(&self, draft: &mut Draft<'_>) {
+        let solve = &draft.scenario.solve;
+        let (Some(blocks), true) = (&draft.blocks, draft.is_sprung() && !solve.grains.tier.has_grains()) else {
+            return;
+        };
+        let settled = as_built(&track::track(draft), &draft.supports, &solve.law.law, blocks);
+        draft.settled = Some(settled);
+        let Some(tolerance) = Exchange::tolerance(draft.scenario) else { return };
+        let limit = tolerance * settled;
+        let Update::Adaptive { tolerance: finest, cap } = solve.update else { return };
+        if limit <= finest {
+            return;
+        }
+        let what = format!("blocks with an error of at most {} mm", number(rounded_down(1e3 * limit)));
+        let why = format!(
+            "{} % of {} mm, the largest settlement by the law under the forces on the new track (`tolerance`)",
+            number(100.0 * tolerance),
+            number(rounded_down(1e3 * settled))
+        );
+        if let Some(blocks) = &mut draft.blocks {
+            blocks.update = Update::Adaptive { tolerance: rounded_down(limit), cap };
+        }
+        draft.decide(self.name(), what, why);
+    }
+
+    fn without(&self) -> Option<fn(&mut Draft<'_>)> {
+        Some(|_| ())
+    }
+}

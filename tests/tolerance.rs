@@ -1,0 +1,135 @@
+//! What the planner makes of the tolerance and the budget of a scene, and that a run keeps to it.
+
+use trackbed::check::{NoModules, Override};
+use trackbed::diag::Code;
+use trackbed::execute::execute;
+use trackbed::graph::{Decision, Graph, Schedule, Update};
+use trackbed::results::{RunRecorder, SleeperRow};
+use trackbed::{Compiled, compile};
+
+const SCENE: &str = r#"
+use std
+granular stone {
+  grading = gradings.ballast_32_80, density = 2700 kg/m^3, friction = 0.7
+  contact_stiffness = 13 MN/m per contact
+}
+trackform open {
+  rail = rails.UIC60
+  pad = pads.ahmadi_2026
+  sleeper = sleepers.B70
+  spacing = 0.6 m
+  layers = [stone: 300 mm]
+  support = { stiffness = 50 MN/m per seat, damping_time = 1 ms }
+}
+trackform stiff : open { sleeper = none, support = none, slab = slabs.half_width_1600, layers = [] }
+track line { sections = [open: 21 m, stiff: 12 m] }
+train ore { vehicles = vehicles.ore_wagon_20t, speed = 200 km/h, direction = forward }
+traffic { trains = ore, total = 200 axles }
+solve { window = -3 .. 0 m }
+"#;
+
+fn compiled(edits: &[&str]) -> Compiled {
+    let edit = |text: &&str| {
+        let (path, value) = text.split_once('=').unwrap();
+        Override { path: path.trim().into(), value: value.trim().into() }
+    };
+    let edits: Vec<Override> = edits.iter().map(edit).collect();
+    let compiled = compile("scene.track", SCENE, &NoModules, &edits);
+    let errors: Vec<_> = compiled.diagnostics.iter().filter(|d| d.is_error()).collect();
+    assert!(errors.is_empty(), "{errors:?}");
+    compiled
+}
+
+fn plan(edits: &[&str]) -> Graph {
+    compiled(edits).graph.unwrap()
+}
+
+/// Settlement of every seat after the last axle, m.
+fn settlement(edits: &[&str]) -> Vec<f64> {
+    let compiled = compiled(edits);
+    let (scenario, graph) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
+    let mut recorder = RunRecorder::new(&scenario, &graph);
+    execute(&graph, &mut recorder).unwrap();
+    let rows = recorder.tables.sleepers.iter().filter(|row| row.axles == 200);
+    SleeperRow::that_count(rows).iter().map(|row| row.settlement_m).collect()
+}
+
+fn error_of_blocks(graph: &Graph) -> f64 {
+    let Schedule::Blocks(blocks) = &graph.schedule else { panic!("trains run") };
+    let Update::Adaptive { tolerance, .. } = blocks.update else { panic!("{:?}", blocks.update) };
+    tolerance
+}
+
+#[test]
+fn a_tolerance_chooses_what_the_scene_leaves_open() {
+    let [fine, coarse, open] = [&[][..], &["solve.tolerance = 5 %"], &["solve.tolerance = 1 %"]].map(plan);
+    let elements = |graph: &Graph| graph.track().unwrap().elements_per_bay;
+    assert_eq!([&fine, &coarse, &open].map(elements), [4, 2, 2]);
+    let longest = |graph: &Graph| graph.blocks().unwrap().passage.time_step;
+    assert_eq!([&fine, &coarse, &open].map(longest), [1e-4, 8e-4, 4e-4]);
+    assert_eq!(error_of_blocks(&fine), 3e-6);
+    assert!(error_of_blocks(&coarse) > 4.5 * error_of_blocks(&open));
+
+    let stated = plan(&[
+        "solve.tolerance = 5 %",
+        "solve.elements_per_bay = 8",
+        "solve.time_step = 0.05 ms",
+        "solve.update_every = adaptive(0.001 mm)",
+    ]);
+    assert_eq!((elements(&stated), longest(&stated), error_of_blocks(&stated)), (8, 5e-5, 1e-6));
+}
+
+#[test]
+fn a_run_keeps_to_its_tolerance_and_to_the_expected_error() {
+    let reference = settlement(&["solve.update_every = 4 axles"]);
+    let largest = reference.iter().copied().fold(0.0, f64::max);
+    for (tolerance, most) in [("5 %", 0.05), ("1 %", 0.01)] {
+        let edit = format!("solve.tolerance = {tolerance}");
+        let apart = settlement(&[&edit]).iter().zip(&reference).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let expected = plan(&[&edit]).error.numerical.unwrap();
+        assert!(apart / largest <= expected && expected <= most, "{} of {expected}", apart / largest);
+    }
+}
+
+/// The decision about the tier; `None` if there was no choice.
+fn choice(graph: &Graph) -> Option<&Decision> {
+    graph.decisions.iter().find(|decision| decision.pass == "budget")
+}
+
+#[test]
+fn a_budget_lets_the_planner_choose_the_ground() {
+    assert!(choice(&plan(&[])).is_none(), "without a budget the law runs");
+    let with = |edits: &[&str]| {
+        let graph = plan(edits);
+        (graph.node("grains").is_some(), choice(&graph).unwrap().clone())
+    };
+    let (grains, law) = with(&["solve.budget = 1000 h", "solve.tolerance = 50 %"]);
+    assert!(!grains && law.what.contains("`substructure = law`"), "the law is within half, and cheapest: {law:?}");
+    let (grains, cells) = with(&["solve.budget = 1000 h", "solve.tolerance = 30 %"]);
+    assert!(grains && cells.what.contains("`substructure = cells`"), "{cells:?}");
+    let (_, full) = with(&["solve.budget = 1000 h", "solve.tolerance = 10 %"]);
+    assert!(full.what.contains("`substructure = full`"), "{full:?}");
+    let zone = full.rejected.iter().find(|other| other.what == "zone").unwrap();
+    assert!(zone.why.contains("expected error is above") && zone.error.unwrap() > 0.1, "{zone:?}");
+    let (grains, short) = with(&["solve.budget = 0.2 min", "solve.tolerance = 10 %"]);
+    assert!(!grains && short.why.contains("smallest expected error within the budget of 12 s"), "{short:?}");
+    let (grains, little) = with(&["solve.budget = 1000 h", "solve.memory = 0.04 GiB", "solve.tolerance = 10 %"]);
+    assert!(
+        !grains && little.rejected.iter().any(|other| other.why.contains("more than the limit of 40 MiB")),
+        "{little:?}"
+    );
+}
+
+#[test]
+fn a_plan_that_misses_its_tolerance_says_what_would_keep_it() {
+    let told = |edits: &[&str]| {
+        let found = compiled(edits).diagnostics.into_iter().find(|found| found.code == Code::L1036);
+        found.map(|found| (found.message.clone(), format!("{:?}", found.help)))
+    };
+    let (message, help) = told(&["solve.budget = 0.2 min"]).unwrap();
+    assert!(message.starts_with("tier `law` has an expected error of 48 %"), "{message}");
+    assert!(message.ends_with("more than the tolerance of 5 %"), "{message}");
+    assert!(help.contains("`substructure = full` has an expected error of 1 %"), "{help}");
+    assert_eq!(told(&["solve.budget = 0.2 min", "solve.tolerance = 50 %"]), None);
+    assert_eq!(told(&["solve.budget = 0.2 min", "solve.substructure = law"]), None, "the scene has decided");
+}
