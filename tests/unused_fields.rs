@@ -71,7 +71,8 @@ const UNDER_A_TRACK: &str = "where grains lie under a track: `substructure = cel
 fn with_a_law_fields_of_grains_are_told_once_for_each_reason() {
     let text = solve(
         "substructure = law, coupling = monolithic, support_from = passage, soil_element = 0.2 m, tolerance = 2 %, \
-         window = 0 .. 20 m, repeats = 3, symmetry = full",
+         window = 0 .. 20 m, repeats = 3, symmetry = full, \
+         update_every = 4 axles, time_step = 0.1 ms, elements_per_bay = 4",
     );
     let compiled = compiled(&text, &[]);
     let mut found: Vec<(String, usize)> = idle(&compiled).iter().map(|d| (d.message.clone(), d.labels.len())).collect();
@@ -84,7 +85,7 @@ fn with_a_law_fields_of_grains_are_told_once_for_each_reason() {
             2,
         ),
         ("`support_from`, `soil_element` and `window` act only where grains lie under bays of a track: `substructure = zone` or `full`".to_owned(), 3),
-        ("`tolerance` acts only where grains lie under some sleepers of a track: `substructure = cells` or `zone`".to_owned(), 1),
+        ("`tolerance` acts only where trains run and `solve` does not state `update_every`, `time_step` or `elements_per_bay`, or where grains lie under some sleepers of a track: `substructure = cells` or `zone`".to_owned(), 1),
     ];
     assert_eq!(found, expected, "{}", shown(&compiled));
     assert!(idle(&compiled).iter().all(|d| !d.is_error()));
@@ -155,7 +156,7 @@ fn what_no_run_reads_is_told_of_parts_too() {
 
 #[test]
 fn an_edit_that_does_nothing_is_told() {
-    let compiled = compiled(TRACK, &[("solve.tolerance", "2 %"), ("solve.window", "0 .. 9 m")]);
+    let compiled = compiled(TRACK, &[("solve.cell_bays", "2"), ("solve.window", "0 .. 9 m")]);
     let names: Vec<&str> =
         idle(&compiled).iter().map(|d| compiled.sources.get(d.labels[0].span.file).name.as_str()).collect();
     assert_eq!(names, ["--set", "--set"], "{}", shown(&compiled));
@@ -163,8 +164,7 @@ fn an_edit_that_does_nothing_is_told() {
 
 #[test]
 fn a_study_over_a_field_that_does_nothing_is_told_once() {
-    let study =
-        "study idle { vary = [solve.tolerance: [1, 2, 5] %, ore.speed: [100, 120] km/h], minimise = max(settlement) }";
+    let study = "study idle { vary = [solve.soil_element: [0.1, 0.2, 0.3] m, ore.speed: [100, 120] km/h], minimise = max(settlement) }";
     let text = format!("{TRACK}solve {{ substructure = law, window = 0 .. 20 m }}\n{study}\n");
     let base = compiled(&text, &[]);
     let scene = Scene { name: "main.track", text: &text, modules: &NoModules, set: &[] };
@@ -172,8 +172,8 @@ fn a_study_over_a_field_that_does_nothing_is_told_once() {
     let found: Vec<&Diagnostic> = plan.diagnostics.iter().filter(|d| d.code == Code::E0429).collect();
     // the window of the scene is told there
     assert_eq!(found.len(), 1, "{found:?}");
-    assert!(found[0].message.contains("`substructure = cells` or `zone` (6 of 6 points"), "{found:?}");
-    assert_eq!(base.sources.text(found[0].labels[0].span), "solve.tolerance");
+    assert!(found[0].message.contains("`substructure = zone` or `full` (6 of 6 points"), "{found:?}");
+    assert_eq!(base.sources.text(found[0].labels[0].span), "solve.soil_element");
 }
 
 #[test]

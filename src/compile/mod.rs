@@ -88,6 +88,7 @@ pub fn compile_with(
         // beside errors of the text, only further errors are reported
         diagnostics.extend(lowered.diagnostics.into_iter().filter(|d| checked.sound || d.is_error()));
         graph = lowered.graph.filter(|_| checked.sound);
+        let was_chosen = chosen.is_some();
         if let (Some(graph), Some(chosen)) = (&mut graph, chosen) {
             graph.decisions.insert(0, chosen);
         }
@@ -101,7 +102,9 @@ pub fn compile_with(
             let of_plan = |graph| [check::readers(scenario), lowered.readers, lint::readers(graph)].concat();
             // a plan that this version cannot run does not show the effect of a line
             let runs = graph.as_ref().filter(|graph| graph.runs);
-            let readers = runs.map(of_plan).unwrap_or_default();
+            let mut readers = runs.map(of_plan).unwrap_or_default();
+            // what the tiers that were not taken read is there for another budget
+            readers.iter_mut().for_each(|reader| reader.acted |= was_chosen);
             diagnostics.extend(unused::told(&checked.stated, &readers, &checked.sources));
         }
     }

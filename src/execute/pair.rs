@@ -75,9 +75,9 @@ impl Pair<'_> {
         self.ground.predict(loads).map_err(|cause| RunError::node(Clock::Axles(axles), cause))
     }
 
-    /// Lets the trains of a block pass in thought, after those of `before`: in steps, with the forces of an exchange that
-    /// follow the settlement as the forces of standing bogies do. All trains of a step meet the mean of the forces at its
-    /// start and of those predicted for its end. Also returns the settlement of every seat after them, m.
+    /// Lets the trains of a block pass in thought, after those of `before`: in steps, with the forces of an exchange
+    /// that follow the settlement as the forces of standing bogies do. All trains of a step meet the mean of the forces
+    /// at its start and of those predicted for its end. Also returns the settlement of every seat after them, m.
     pub fn followed<'e>(
         &self,
         exchange: &'e Exchange,

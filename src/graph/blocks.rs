@@ -149,8 +149,8 @@ impl Blocks {
         (0..parts).map(part).collect()
     }
 
-    /// Divides a block into steps that settle the track by about the same amount: settlement grows about as the cube root
-    /// of the number of trains.
+    /// Divides a block into steps that settle the track by about the same amount: settlement grows about as the cube
+    /// root of the number of trains.
     pub fn steps(&self, block: &Block) -> Vec<Block> {
         let (first, last) = (self.position(block.before), self.position(block.before + block.axles));
         let roots = [first, last].map(|position| (position as f64).cbrt());

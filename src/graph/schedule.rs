@@ -168,8 +168,8 @@ impl PassagePlan {
         self.time_step * self.adaptive.map_or(1.0, |steps| 0.5f64.powi(steps.halvings as i32))
     }
 
-    /// Average step for estimates, s. Adaptive steps of the shipped passages have 0.36 ms on average with a tolerance of
-    /// 1e-4, 0.16 ms with 1e-5 and 0.06 ms with 1e-6.
+    /// Average step for estimates, s. Adaptive steps of the shipped passages have 0.36 ms on average with a tolerance
+    /// of 1e-4, 0.16 ms with 1e-5 and 0.06 ms with 1e-6.
     pub fn usual_step(&self) -> f64 {
         let usual = |steps: AdaptiveSteps| 3.7e-4 * (steps.tolerance / 1e-4).powf(0.4);
         self.adaptive.map_or(self.time_step, |steps| usual(steps).clamp(self.shortest_step(), self.time_step))

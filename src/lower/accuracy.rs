@@ -86,8 +86,9 @@ impl Pass for Mesh {
         &[&READS]
     }
 
+    /// The pass that chooses the steps acts in every scene with trains, so this one also speaks for it.
     fn acts(&self, scenario: &Scenario) -> bool {
-        Mesh::elements(scenario).is_some()
+        Mesh::elements(scenario).is_some() || steps(scenario).is_some()
     }
 
     fn run(&self, draft: &mut Draft<'_>) {

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 /// Standing bogies of every kind of train on a track with one element a bay.
 pub struct StandingBogies {
     rows: Vec<Row>,
-    /// Of each kind of train.
+    /// The bogies of each kind of train.
     kinds: Vec<Vec<Bogie>>,
 }
 
@@ -88,8 +88,8 @@ impl StandingBogies {
         Ok(StandingForces(forces))
     }
 
-    /// Peak forces of a passage over a settlement with the forces `from`, on a settlement with the forces `to`. Index by
-    /// seat, then by wheel of the train.
+    /// Peak forces of a passage over a settlement with the forces `from`, on a settlement with the forces `to`. Index
+    /// by seat, then by wheel of the train.
     pub fn follow(
         &self,
         kind: usize,

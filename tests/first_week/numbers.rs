@@ -50,7 +50,7 @@ pub const SLIPS: &[Slip] = &[
     (B, "youngs_modulus = 34 GPa", "youngs_modulus = 34000", E0301, "`34000 MPa`", "34000"),
     (B, "depth = 650 mm", "depth = 650", E0301, "`650 mm`", "650"),
     (B, "[freight: 70 %, passenger: 30 %]", "[freight: 70, passenger: 30]", E0405, "`[freight: 70, passenger: 30] %`", "[freight: 70, passenger: 30]"),
-    (B, "adaptive(0.02 mm)", "adaptive(0.02)", E0301, "`0.02 mm`", "0.02"),
+    (B, "tolerance    = 5 %", "tolerance    = 5", E0405, "`5 %`", "5"),
     (U, "let first = 0.15 N/mm^3", "let first = 0.15", E0301, "`0.15 N/mm^3`", "0.15"),
     (U, "ramp(first .. last)", "ramp(0.15 .. 0.6)", E0301, "`0.15 .. 0.6 N/mm^3`", ""),
     (W, "sleeper.base_width = 400 mm", "sleeper.base_width = 400", E0301, "`400 mm`", "400"),

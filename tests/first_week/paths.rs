@@ -47,9 +47,9 @@ pub const SLIPS: &[Slip] = &[
     (B, "sleeper = sleepers.B70", "sleeper = \"B70\"", E0406, "`sleepers.B70`", "\"B70\""),
     (B, "pad     = pads.medium", "pad     = pad.medium", E0201, "`pads.medium`", "pad.medium"),
     (B, "pad     = pads.medium", "pad     = pads.Medium", E0201, "`pads.medium`", "pads.Medium"),
-    (B, "law              = laws.varandas_2014", "law              = laws.sato", E0201, "`laws.sato_1995`", "laws.sato"),
-    (B, "law              = laws.varandas_2014", "law              = sato", E0201, "`laws.sato_1995`", "sato"),
-    (B, "law              = laws.varandas_2014", "law              = varandas(gamma = 8 mm)", E0406, "`{ form = varandas(gamma = 8 mm) }`", "varandas(gamma = 8 mm)"),
+    (B, "law          = laws.varandas_2014", "law          = laws.sato", E0201, "`laws.sato_1995`", "laws.sato"),
+    (B, "law          = laws.varandas_2014", "law          = sato", E0201, "`laws.sato_1995`", "sato"),
+    (B, "law          = laws.varandas_2014", "law          = varandas(gamma = 8 mm)", E0406, "`{ form = varandas(gamma = 8 mm) }`", "varandas(gamma = 8 mm)"),
     (B, "vehicles.ore_wagon_30t,", "ore_wagon_30t,", E0201, "`vehicles.ore_wagon_30t`", "ore_wagon_30t"),
     (B, "vehicles.ice3_middle", "vehicles.ICE3", E0201, "`vehicles.ice3_middle`", "vehicles.ICE3"),
     // modules and files

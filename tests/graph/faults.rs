@@ -5,8 +5,8 @@ use super::sinking::plan;
 use trackbed::execute::{RunError, execute};
 use trackbed::graph::quantity::WHEEL_FORCES;
 use trackbed::graph::{
-    Basis, Cost, CustomNode, Edge, Fault, Graph, Model, Node, PassageWork, Ports, Quantity, Rate, Schedule, Work,
-    faults,
+    Basis, Cost, CustomNode, Edge, ExpectedError, Fault, Graph, Model, Node, PassageWork, Ports, Quantity, Rate,
+    Schedule, Work, faults,
 };
 
 const SUCTION: Quantity = Quantity::new("suction", "u", "Pa", Basis::Facet, Rate::Block);

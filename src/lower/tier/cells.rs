@@ -36,8 +36,8 @@ const REACH: f64 = 6.0;
 /// Distance from the median / range of a group, within which a settlement counts as the median.
 const NEARLY: f64 = 0.1;
 
-/// Largest error of cells / settlement of the whole bed: `transition_short.track`, 20 axles, the worst of three packings
-/// (docs/validation.md, "The shortened scene in every tier").
+/// Largest error of cells / settlement of the whole bed: `transition_short.track`, 20 axles, the worst of three
+/// packings (docs/validation.md, "The shortened scene in every tier").
 const OF_CELLS: f64 = 0.29;
 
 impl Tier for Cells {

@@ -52,8 +52,9 @@ const JOINED: Reads = Reads {
 /// Fields that both tiers read.
 const ALL: &[&Reads] = &[&track::READS, &bed::READS, &bed::VOLUMES, &READS, &JOINED];
 
-/// Largest errors / settlement on packings of `transition_short.track` (docs/validation.md, "The shortened scene in every
-/// tier"): by grains in some bays only, and by exchanges of forces and settlement after every train and after 20 axles.
+/// Largest errors / settlement on packings of `transition_short.track` (docs/validation.md, "The shortened scene in
+/// every tier"): by grains in some bays only, and by exchanges of forces and settlement after every train and after 20
+/// axles.
 const OF_ZONE: f64 = 0.21;
 const OF_COUPLING: [f64; 2] = [0.01, 0.06];
 
