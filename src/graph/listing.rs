@@ -329,14 +329,24 @@ fn block_line(blocks: &Blocks, cost: &Cost) -> String {
             format!("{total} axles in blocks of {} at most", axles.min(total))
         }
         Update::Fixed { .. } | Update::Geometric { .. } => {
-            let [shortest, longest] = cost.passages().block_axles;
+            let (count, [shortest, longest]) = match cost.work {
+                Work::Passages(work) => (work.blocks, work.block_axles),
+                Work::Tests(_) => planned(blocks),
+            };
             let range = match shortest == longest {
                 true => format!("{longest} axles each"),
                 false => format!("{shortest} to {longest} axles"),
             };
-            format!("{total} axles in {} blocks, {range}", cost.passages().blocks)
+            format!("{total} axles in {count} blocks, {range}")
         }
     }
+}
+
+/// Number of prescribed blocks, and axles of the shortest and of the longest one.
+fn planned(blocks: &Blocks) -> (u64, [u64; 2]) {
+    let axles: Vec<u64> = blocks.planned().unwrap_or_default().iter().map(|block| block.axles).collect();
+    let [shortest, longest] = [axles.iter().min(), axles.iter().max()].map(|axles| axles.copied().unwrap_or(0));
+    (axles.len() as u64, [shortest, longest])
 }
 
 fn test_lines(tests: &Tests, actuators: &ActuatorsNode) -> Vec<String> {

@@ -17,9 +17,6 @@ const ELEMENTS: u32 = 2;
 /// Least tolerance for which they are enough.
 const COARSE: f64 = 0.005;
 
-/// Error at the end of a run / sum of the errors of its blocks on a track at rest: the error of a block is known for
-/// the forces of its start, and the result has the forces of its middle.
-const OF_BLOCKS: f64 = 0.25;
 /// Error / largest settlement by the dynamic part of the forces, which does not follow the settlement within a block:
 /// at most half of the error limit of a block, and no more than this (`benches/tolerances.py`).
 const OF_DYNAMICS: f64 = 1.5e-3;
@@ -51,8 +48,9 @@ pub(super) fn steps(scenario: &Scenario) -> Option<(f64, f64)> {
     Some((OF_STEPS * tolerance, ANY_LONGEST.min(LONGEST * (tolerance / 0.01).sqrt())))
 }
 
-/// Expected error of a run by a law / its largest settlement, by blocks and steps; `None` if the blocks are prescribed,
-/// because only the run can tell their error.
+/// Expected error of a run by a law / its largest settlement, by blocks and steps: the errors of the blocks on a track
+/// at rest, the dynamic part, and the steps. `None` if the blocks are prescribed, because only the run can tell their
+/// error.
 pub(super) fn expected(draft: &Draft<'_>, blocks: &Blocks, outlook: &Outlook) -> Option<f64> {
     let (limit, _) = blocks.adaptive()?;
     let settled = draft.settled.filter(|settled| *settled > 0.0)?;
@@ -61,7 +59,7 @@ pub(super) fn expected(draft: &Draft<'_>, blocks: &Blocks, outlook: &Outlook) ->
         None => 0.2 * OF_STEPS * 0.01 * (plan.time_step / LONGEST).powi(2),
     };
     let steps = blocks.kinds().map(|(_, plan)| of_steps(plan)).fold(0.0, f64::max);
-    Some(OF_BLOCKS * outlook.error / settled + OF_DYNAMICS.min(0.5 * limit / settled) + steps)
+    Some(outlook.error / settled + OF_DYNAMICS.min(0.5 * limit / settled) + steps)
 }
 
 /// Chooses the elements of the rail.

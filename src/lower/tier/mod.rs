@@ -79,6 +79,8 @@ impl Pass for ChooseTier<'_> {
         for tier in self.0 {
             match tier.propose(draft) {
                 Ok(proposal) if word.is_none_or(|word| tier.answers(word)) => offers.push((tier.name(), proposal)),
+                // a budget has compared the others already
+                Ok(_) if draft.scenario.solve.grains.tier.origin == scenario::Origin::Derived => {}
                 Ok(proposal) => rejected.push(not_asked(tier.name(), &proposal)),
                 Err(why) => rejected.push(Rejected::new(tier.name(), why)),
             }
