@@ -9,7 +9,7 @@ use super::{Draft, Pass, track};
 use crate::graph::{Blocks, PassagePlan, Rejected, Update};
 use crate::scenario::{Beam, Loading, Origin, Scenario, TimeStep};
 use crate::schema::Reads;
-use crate::units::{number, rounded_down};
+use crate::units::{number, percent, rounded_down};
 
 /// Elements a bay of a rail without shear: two of them change wheel forces, seat loads and rail moments by at most
 /// 0.2 %; a single one misses the rail moment by 11 %.
@@ -27,6 +27,9 @@ const OF_STEPS: f64 = 0.02;
 const LONGEST: f64 = 4e-4;
 /// The longest step at any tolerance, s: an eighth of the period of a sleeper between pad and support.
 const ANY_LONGEST: f64 = 8e-4;
+
+/// How often the error limit of a block is halved until the expected error of the run is within the tolerance.
+const HALVINGS: u32 = 6;
 
 /// The field that all other settings follow from.
 const READS: Reads = Reads {
@@ -127,26 +130,37 @@ impl Pass for Exchange {
 
     fn run(&self, draft: &mut Draft<'_>) {
         let solve = &draft.scenario.solve;
-        let (Some(blocks), true) = (&draft.blocks, draft.is_sprung() && !solve.grains.tier.has_grains()) else {
+        let (Some(mut blocks), true) = (draft.blocks.clone(), draft.is_sprung() && !solve.grains.tier.has_grains())
+        else {
             return;
         };
-        let settled = as_built(&track::track(draft), &draft.supports, &solve.law.law, blocks);
+        let (node, law) = (track::track(draft), &solve.law.law);
+        let settled = as_built(&node, &draft.supports, law, &blocks);
         draft.settled = Some(settled);
-        let Some(tolerance) = Exchange::tolerance(draft.scenario) else { return };
-        let limit = tolerance * settled;
-        let Update::Adaptive { tolerance: finest, cap } = solve.update else { return };
+        let (Some(tolerance), Update::Adaptive { tolerance: finest, cap }) =
+            (Exchange::tolerance(draft.scenario), solve.update)
+        else {
+            return;
+        };
+        let mut limit = tolerance * settled;
+        for _ in 0..HALVINGS {
+            blocks.update = Update::Adaptive { tolerance: rounded_down(limit.max(finest)), cap };
+            let outlook = Outlook::new(&node, &draft.supports, law, &blocks);
+            if limit <= finest || expected(draft, &blocks, &outlook).is_none_or(|error| error <= tolerance) {
+                break;
+            }
+            limit *= 0.5;
+        }
         if limit <= finest {
             return;
         }
         let what = format!("blocks with an error of at most {} mm", number(rounded_down(1e3 * limit)));
         let why = format!(
-            "{} % of {} mm, the largest settlement by the law under the forces on the new track (`tolerance`)",
-            number(100.0 * tolerance),
+            "{} of {} mm, the largest settlement by the law under the forces on the new track (`tolerance`)",
+            percent(limit / settled),
             number(rounded_down(1e3 * settled))
         );
-        if let Some(blocks) = &mut draft.blocks {
-            blocks.update = Update::Adaptive { tolerance: rounded_down(limit), cap };
-        }
+        draft.blocks = Some(blocks);
         draft.decide(self.name(), what, why);
     }
 
