@@ -111,6 +111,8 @@ fn a_budget_lets_the_planner_choose_the_ground() {
     assert!(full.what.contains("`substructure = full`"), "{full:?}");
     let zone = full.rejected.iter().find(|other| other.what == "zone").unwrap();
     assert!(zone.why.contains("expected error is above") && zone.error.unwrap() > 0.1, "{zone:?}");
+    let (_, tiny) = with(&["solve.budget = 0.01 min", "solve.memory = 0.01 GiB"]);
+    assert!(tiny.why.contains("no tier fits; it is the cheapest, but it needs"), "{tiny:?}");
     let (grains, short) = with(&["solve.budget = 0.2 min", "solve.tolerance = 10 %"]);
     assert!(!grains && short.why.contains("smallest expected error within the budget of 12 s"), "{short:?}");
     let (_, little) = with(&["solve.budget = 1000 h", "solve.memory = 0.04 GiB", "solve.tolerance = 10 %"]);

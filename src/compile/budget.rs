@@ -21,7 +21,7 @@ struct Offer {
     tier: Tier,
     seconds: f64,
     bytes: f64,
-    /// Expected error / largest settlement.
+    /// Expected error / largest settlement; infinite if it is not known.
     error: f64,
 }
 
@@ -36,6 +36,9 @@ pub fn tier(planner: &Planner, scenario: &Scenario) -> Option<Taken> {
         .into_iter()
         .filter_map(|tier| offer(planner, scenario, tier))
         .collect();
+    if offers.iter().all(|offer| offer.tier == Tier::Law) {
+        return None;
+    }
     let fits = |offer: &&Offer| offer.seconds <= budget && grains.memory.is_none_or(|memory| offer.bytes <= *memory);
     let accurate = |offer: &&Offer| offer.error <= *grains.tolerance;
     let cheapest = |a: &&Offer, b: &&Offer| a.seconds.total_cmp(&b.seconds);
@@ -45,14 +48,7 @@ pub fn tier(planner: &Planner, scenario: &Scenario) -> Option<Taken> {
         (offer, format!("it has the smallest expected error within the budget of {}", duration(budget)))
     } else {
         let offer = offers.iter().min_by(cheapest)?;
-        let missing = duration(offer.seconds - budget);
-        (
-            offer,
-            format!(
-                "nothing fits the budget of {} and the memory; the cheapest tier misses the budget by {missing}",
-                duration(budget)
-            ),
-        )
+        (offer, format!("no tier fits; it is the cheapest, but {}", against(offer, grains, budget)))
     };
     let others = offers.iter().filter(|offer| offer.tier != taken.tier);
     let rejected = others.map(|offer| rejected(offer, grains, budget)).collect();
@@ -67,19 +63,26 @@ fn with(scenario: &Scenario, tier: Tier) -> Scenario {
     of_tier
 }
 
-/// The plan of a tier, if it can run; a tier without a known error is at the end of the choice.
+/// The plan of a tier, if it can run.
 fn offer(planner: &Planner, scenario: &Scenario, tier: Tier) -> Option<Offer> {
     let of_tier = with(scenario, tier);
     let by_law = by_law::settlement(planner, &of_tier);
     let lowered = planner.lower_with(&of_tier, by_law.as_deref());
     let graph: Graph = lowered.graph.filter(|graph| graph.runs && !has_errors(&lowered.diagnostics))?;
     let (seconds, bytes) = (graph.cost.seconds_on_two_cores, graph.cost.bytes as f64);
-    Some(Offer { tier, seconds, bytes, error: graph.error.share().unwrap_or(0.0) })
+    Some(Offer { tier, seconds, bytes, error: graph.error.share().unwrap_or(f64::INFINITY) })
 }
 
 fn rejected(offer: &Offer, grains: &Grains, budget: f64) -> Rejected {
+    let why = against(offer, grains, budget);
+    let error = Some(offer.error).filter(|error| error.is_finite());
+    Rejected { seconds: Some(offer.seconds), error, ..Rejected::new(offer.tier.name(), why) }
+}
+
+/// The reason against a tier.
+fn against(offer: &Offer, grains: &Grains, budget: f64) -> String {
     let memory = grains.memory.filter(|memory| offer.bytes > **memory);
-    let why = if offer.seconds > budget {
+    if offer.seconds > budget {
         format!("it misses the budget of {} by {}", duration(budget), duration(offer.seconds - budget))
     } else if let Some(memory) = memory {
         let mib = |bytes: f64| number((bytes / f64::from(1 << 20)).ceil());
@@ -88,6 +91,5 @@ fn rejected(offer: &Offer, grains: &Grains, budget: f64) -> Rejected {
         "its expected error is above the `tolerance`".to_owned()
     } else {
         "it costs more".to_owned()
-    };
-    Rejected { seconds: Some(offer.seconds), error: Some(offer.error), ..Rejected::new(offer.tier.name(), why) }
+    }
 }

@@ -98,7 +98,7 @@ impl Pair<'_> {
             let mut all = with(&here)?;
             if step.trains() > 1 {
                 let end = standing(&self.predict(block.before, &loads(&all))?)?;
-                all = with(&here.mean(&end, step.trains()))?;
+                all = with(&here.towards(&end, step.middle()))?;
                 here = end;
             } else {
                 here = standing(&self.predict(block.before, &loads(&all))?)?;

@@ -197,6 +197,13 @@ impl Block {
         self.runs.iter().map(|(_, trains)| trains).sum()
     }
 
+    /// Place of the mean forces of its trains between the forces at its start (0) and after its last train (1): each
+    /// train meets the forces that the trains before it have left.
+    pub fn middle(&self) -> f64 {
+        let trains = self.trains().max(1) as f64;
+        0.5 * (trains - 1.0) / trains
+    }
+
     /// Number of trains of all kinds in a direction.
     pub fn towards(&self, direction: Direction) -> u64 {
         self.runs.iter().filter(|(runner, _)| runner.direction == direction).map(|(_, trains)| trains).sum()

@@ -54,9 +54,9 @@ pub(super) fn steps(scenario: &Scenario) -> Option<(f64, f64)> {
 /// Expected error of a run by a law / its largest settlement, by blocks and steps: the errors of the blocks on a track
 /// at rest, the dynamic part, and the steps. `None` if the blocks are prescribed, because only the run can tell their
 /// error.
-pub(super) fn expected(draft: &Draft<'_>, blocks: &Blocks, outlook: &Outlook) -> Option<f64> {
+pub(super) fn expected(blocks: &Blocks, outlook: &Outlook) -> Option<f64> {
     let (limit, _) = blocks.adaptive()?;
-    let settled = draft.settled.filter(|settled| *settled > 0.0)?;
+    let settled = Some(outlook.settled).filter(|settled| *settled > 0.0)?;
     let of_steps = |plan: &PassagePlan| match plan.adaptive {
         Some(steps) => 0.2 * steps.tolerance,
         None => 0.2 * OF_STEPS * 0.01 * (plan.time_step / LONGEST).powi(2),
@@ -130,34 +130,34 @@ impl Pass for Exchange {
 
     fn run(&self, draft: &mut Draft<'_>) {
         let solve = &draft.scenario.solve;
-        let (Some(mut blocks), true) = (draft.blocks.clone(), draft.is_sprung() && !solve.grains.tier.has_grains())
+        let (Some(tolerance), Some(mut blocks), true) =
+            (Exchange::tolerance(draft.scenario), draft.blocks.clone(), draft.is_sprung())
         else {
             return;
         };
+        let Update::Adaptive { tolerance: finest, cap } = solve.update else { return };
         let (node, law) = (track::track(draft), &solve.law.law);
-        let settled = as_built(&node, &draft.supports, law, &blocks);
-        draft.settled = Some(settled);
-        let (Some(tolerance), Update::Adaptive { tolerance: finest, cap }) =
-            (Exchange::tolerance(draft.scenario), solve.update)
-        else {
-            return;
-        };
-        let mut limit = tolerance * settled;
+        // too large beside a structure, where sleepers that settle lose load
+        let mut limit = tolerance * as_built(&node, &draft.supports, law, &blocks);
+        let (mut taken, mut settled) = (limit, 0.0);
         for _ in 0..HALVINGS {
-            blocks.update = Update::Adaptive { tolerance: rounded_down(limit.max(finest)), cap };
+            if limit <= finest {
+                return;
+            }
+            taken = rounded_down(limit);
+            blocks.update = Update::Adaptive { tolerance: taken, cap };
             let outlook = Outlook::new(&node, &draft.supports, law, &blocks);
-            if limit <= finest || expected(draft, &blocks, &outlook).is_none_or(|error| error <= tolerance) {
+            settled = outlook.settled;
+            let fits = expected(&blocks, &outlook).is_none_or(|error| error <= tolerance);
+            if fits && taken <= tolerance * settled {
                 break;
             }
-            limit *= 0.5;
+            limit = (tolerance * settled).min(if fits { limit } else { 0.5 * limit });
         }
-        if limit <= finest {
-            return;
-        }
-        let what = format!("blocks with an error of at most {} mm", number(rounded_down(1e3 * limit)));
+        let what = format!("blocks with an error of at most {} mm", number(1e3 * taken));
         let why = format!(
-            "{} of {} mm, the largest settlement by the law under the forces on the new track (`tolerance`)",
-            percent(limit / settled),
+            "{} of {} mm, the expected largest settlement (`tolerance`)",
+            percent(taken / settled),
             number(rounded_down(1e3 * settled))
         );
         draft.blocks = Some(blocks);

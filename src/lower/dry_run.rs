@@ -51,21 +51,23 @@ struct Forces {
 }
 
 impl Forces {
-    /// Forces of running trains on another settlement: `trains` trains, the first of which meets the standing forces
-    /// `here` and the next after the last `end`.
-    fn on(&self, here: &Peaks, end: &Peaks, trains: u64) -> Peaks {
-        let weight = 0.5 * (trains - 1) as f64 / trains as f64;
-        let between = |a: f64, b: f64| a + weight * (b - a);
+    /// Forces of running trains on a settlement with these standing forces.
+    fn on(&self, standing: &Peaks) -> Peaks {
         let flat = |peaks: &Peaks| peaks.iter().flatten().flatten().flatten().copied().collect::<Vec<Peak>>();
-        let [standing, here, end] = [&self.standing, here, end].map(flat);
+        let (from, to) = (flat(&self.standing), flat(standing));
         let mut on = self.running.clone();
-        for (at, peak) in on.iter_mut().flatten().flatten().flatten().enumerate() {
-            peak.force += between(here[at].force, end[at].force) - standing[at].force;
-            peak.deflection += between(here[at].deflection, end[at].deflection) - standing[at].deflection;
-            (peak.force, peak.deflection) = (peak.force.max(0.0), peak.deflection.max(0.0));
-        }
+        let peaks = on.iter_mut().flatten().flatten().flatten();
+        peaks.zip(from.into_iter().zip(to)).for_each(|(peak, (from, to))| *peak = peak.followed(from, to));
         on
     }
+}
+
+/// Standing forces between those at the start of a step (0) and at its end (1).
+fn between(start: &Peaks, end: &Peaks, share: f64) -> Peaks {
+    let mut between = start.clone();
+    let peaks = between.iter_mut().flatten().flatten().flatten().zip(end.iter().flatten().flatten().flatten());
+    peaks.for_each(|(peak, end)| *peak = peak.towards(*end, share));
+    between
 }
 
 /// Largest settlement by the law under the forces on the new track, m: by all trains, or until the first tamping.
@@ -97,6 +99,11 @@ impl<'a> DryRun<'a> {
         let stretches: Vec<Stretch> = ranges.filter_map(|range| Stretch::new(track, supports, blocks, range)).collect();
         let states = stretches.iter().map(|stretch| vec![law.fresh(); stretch.seats.len()]).collect();
         DryRun { blocks, tolerance, cap, stretches, states, control: Control::default(), error: 0.0 }
+    }
+
+    /// Largest settlement so far, m.
+    pub fn settled(&self) -> f64 {
+        settlements(&self.states).into_iter().fold(0.0, f64::max)
     }
 
     /// Starts the settlement law of every seat again.
@@ -148,10 +155,12 @@ impl<'a> DryRun<'a> {
         let mut states = from.clone();
         let mut here = self.peaks(&states, 1.0);
         for step in self.blocks.steps(block) {
-            let at_start = self.after(&states, &step, &reference.on(&here, &here, 1));
+            let at_start = self.after(&states, &step, &reference.on(&here));
             let end = self.peaks(&at_start, 1.0);
-            let trains = step.trains();
-            states = if trains > 1 { self.after(&states, &step, &reference.on(&here, &end, trains)) } else { at_start };
+            states = match step.trains() {
+                1 => at_start,
+                _ => self.after(&states, &step, &reference.on(&between(&here, &end, step.middle()))),
+            };
             here = end;
         }
         states

@@ -22,6 +22,8 @@ pub(super) struct Outlook {
     pub passages: Vec<u64>,
     /// Sum of the errors of settlement of the blocks, m; 0 for prescribed blocks, because only the run can tell.
     pub error: f64,
+    /// Largest settlement at any time, m; 0 for prescribed blocks.
+    pub settled: f64,
 }
 
 impl Outlook {
@@ -35,7 +37,8 @@ impl Outlook {
 
     fn made(track: &TrackNode, supports: &[SupportNode], law: &Law, blocks: &Blocks) -> Outlook {
         let kinds = blocks.others.len() + 1;
-        let mut outlook = Outlook { blocks: 0, axles: [u64::MAX, 0], passages: vec![0; kinds], error: 0.0 };
+        let mut outlook =
+            Outlook { blocks: 0, axles: [u64::MAX, 0], passages: vec![0; kinds], error: 0.0, settled: 0.0 };
         let mut dry = blocks.adaptive().map(|accuracy| DryRun::new(track, supports, law, blocks, accuracy));
         let mut before = 0;
         while before < blocks.total {
@@ -58,7 +61,10 @@ impl Outlook {
                 None => blocks.block(before, expected),
             };
             outlook.blocks += 1;
-            outlook.error = dry.as_ref().map_or(0.0, |dry| dry.error);
+            if let Some(dry) = &dry {
+                outlook.error = dry.error;
+                outlook.settled = outlook.settled.max(dry.settled());
+            }
             outlook.axles = [outlook.axles[0].min(block.axles), outlook.axles[1].max(block.axles)];
             before += block.axles;
         }

@@ -50,8 +50,6 @@ pub struct Draft<'a> {
     pub bays: Vec<[f64; 2]>,
     /// The name of the tier that was taken.
     pub tier: Option<&'static str>,
-    /// Largest settlement by the law under the forces on the new track, m; `None` without a law.
-    pub settled: Option<f64>,
     /// The support of every seat of a track, as far as it is known from the scene or its layers.
     pub supports: Vec<SupportNode>,
     pub nodes: Vec<Node>,
@@ -79,7 +77,6 @@ impl<'a> Draft<'a> {
             by_law,
             bays: Vec::new(),
             tier: None,
-            settled: None,
             supports: Vec::new(),
             nodes: Vec::new(),
             edges: Vec::new(),

@@ -101,14 +101,10 @@ impl StandingBogies {
         for (number, bogie) in self.kinds[kind].iter().enumerate() {
             let (from, to) = (&from.0[kind][number], &to.0[kind][number]);
             for (seat, peaks) in followed.iter_mut().enumerate() {
-                let [force, deflection] =
-                    [to[seat].force - from[seat].force, to[seat].deflection - from[seat].deflection];
                 for wheel in &bogie.wheels_of_train {
-                    let Some(peak) = peaks.get_mut(*wheel) else { continue };
-                    *peak = Peak {
-                        force: (peak.force + force).max(0.0),
-                        deflection: (peak.deflection + deflection).max(0.0),
-                    };
+                    if let Some(peak) = peaks.get_mut(*wheel) {
+                        *peak = peak.followed(from[seat], to[seat]);
+                    }
                 }
             }
         }
@@ -117,15 +113,9 @@ impl StandingBogies {
 }
 
 impl StandingForces {
-    /// The mean over `trains` equal trains, the first of which meets these forces and the next after the last `end`.
-    pub fn mean(&self, end: &StandingForces, trains: u64) -> StandingForces {
-        let weight = 0.5 * (trains.saturating_sub(1)) as f64 / trains.max(1) as f64;
-        let between = |a: f64, b: f64| a + weight * (b - a);
-        let peak = |(a, b): (&Peak, &Peak)| Peak {
-            force: between(a.force, b.force),
-            deflection: between(a.deflection, b.deflection),
-        };
-        let bogie = |(a, b): (&Vec<Peak>, &Vec<Peak>)| a.iter().zip(b).map(peak).collect();
+    /// Forces between these (0) and others (1).
+    pub fn towards(&self, end: &StandingForces, share: f64) -> StandingForces {
+        let bogie = |(a, b): (&Vec<Peak>, &Vec<Peak>)| a.iter().zip(b).map(|(a, b)| a.towards(*b, share)).collect();
         let kind = |(a, b): (&Vec<Vec<Peak>>, &Vec<Vec<Peak>>)| a.iter().zip(b).map(bogie).collect();
         StandingForces(self.0.iter().zip(&end.0).map(kind).collect())
     }

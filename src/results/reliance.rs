@@ -275,7 +275,7 @@ fn supports(graph: &Graph) -> Option<String> {
 
 /// Number of computed passages, and of the trains that they represent.
 fn shared(graph: &Graph, tables: &RunTables) -> Option<String> {
-    let trains = graph.blocks()?.trains_left(0);
+    let trains = graph.blocks()?.sequence.trains();
     let passages: u64 = tables.blocks.iter().map(|block| block.passages).sum();
     (1..trains).contains(&passages).then(|| {
         format!(

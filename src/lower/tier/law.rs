@@ -65,7 +65,7 @@ impl Tier for SettlementLaws {
             cost,
             what: "a settlement law under each sleeper".into(),
             why: why.into(),
-            error: ExpectedError { numerical: accuracy::expected(draft, blocks, &outlook), ..of_law(scenario) },
+            error: ExpectedError { numerical: accuracy::expected(blocks, &outlook), ..of_law(scenario) },
             runs: true,
             refusals: Vec::new(),
         })

@@ -24,6 +24,20 @@ impl Peak {
         Peak { force: self.force.max(other.force), deflection: self.deflection.max(other.deflection) }
     }
 
+    /// A peak between this one (0) and another one (1).
+    pub fn towards(self, end: Peak, share: f64) -> Peak {
+        let between = |a: f64, b: f64| a + share * (b - a);
+        Peak { force: between(self.force, end.force), deflection: between(self.deflection, end.deflection) }
+    }
+
+    /// The same peak with the change of another one added, never below 0.
+    pub fn followed(self, from: Peak, to: Peak) -> Peak {
+        Peak {
+            force: (self.force + (to.force - from.force)).max(0.0),
+            deflection: (self.deflection + (to.deflection - from.deflection)).max(0.0),
+        }
+    }
+
     /// The same peak multiplied by a factor, for a linear support.
     pub fn scaled(self, factor: f64) -> Peak {
         Peak { force: self.force * factor, deflection: self.deflection * factor }
