@@ -49,7 +49,7 @@ fn json(output: &Output) -> Value {
 fn synthetic(noise: f64) -> String {
     let form = Form::Varandas(Varandas { gamma: 7e-3, beta: 0.9, ..Varandas::default() });
     let law = Law { form, cycle_per: CyclePer::Axle };
-    let settled = curve(&law, &[Peak { force: 40e3, deflection: 1e-3 }], &COUNTS);
+    let settled = curve(&law, &[Peak { force: 40e3, deflection: 1e-3, void: 0.0 }], &COUNTS);
     let mut text = "axles,settlement_mm\n".to_string();
     for (k, (axles, settlement)) in COUNTS.iter().zip(settled).enumerate() {
         let sign = [1.0, -1.0, -0.5, 0.8, -1.0, 0.6, -0.2][k];

@@ -78,7 +78,7 @@ fn a_cycle_has_its_basis() {
     let power =
         first("law first { form = power(1 mm, 2, 0.2, reference_force = 80 kN per sleeper), cycle_per = bogie }");
     assert_eq!(power.law.cycle_per, CyclePer::Bogie);
-    assert_eq!(power.law.form, Form::Power(Power { a: 1e-3, m: 2.0, b: 0.2, reference_force: 40e3 }));
+    assert_eq!(power.law.form, Form::Power(Power { a: 1e-3, m: 2.0, b: 0.2, reference_force: 40e3, g: 0.0 }));
     let decimal = first("law first { form = hettler(logarithm = decimal) }").law.form;
     assert!(matches!(decimal, Form::Hettler(Hettler { logarithm: Logarithm::Decimal, .. })));
 }

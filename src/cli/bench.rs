@@ -276,7 +276,7 @@ fn copies(text: &str) -> Result<[u32; 2], String> {
 }
 
 /// `2 mm`, in m.
-fn length(text: &str) -> Result<f64, String> {
+pub(super) fn length(text: &str) -> Result<f64, String> {
     let expected = || format!("expected a length such as `2 mm`, found `{text}`");
     let end = text.find(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E')).ok_or_else(expected)?;
     let (value, unit) = text.split_at(end);

@@ -1,7 +1,8 @@
-//! `trackbed calibrate`: the parameters with which the law of a scene comes nearest to a measured settlement curve.
+//! `trackbed calibrate`: the parameters with which the law of a scene comes nearest to a measured settlement curve, or
+//! a law for the grains of the scene.
 
 use super::scene::{SceneArguments, failed, not_yet, show};
-use super::{Format, Outcome, terminal};
+use super::{Format, Outcome, calibrate_grains, terminal};
 use crate::check::{self, MeasuredCurve, measured_curve};
 use crate::compile::Compiled;
 use crate::diag::{Code, Diagnostic, FileId, Span, nearest::nearest, or_list};
@@ -13,28 +14,31 @@ use crate::solvers::settlement::fit::{Fit, FitError};
 use crate::solvers::settlement::{self, Form, Law, Logarithm, Measured, Peak, Wanted};
 use crate::units::{Dimension, number, parse_unit};
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// Fit the settlement law of a scene to a measured curve
+/// Fit the settlement law of a scene to a measured curve, or a law to the grains of the scene
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   trackbed calibrate scenarios/transition.track --measured curve.csv
-  trackbed calibrate zone.track --measured curve.csv --seat-load '40 kN' --fit gamma,beta")]
+  trackbed calibrate zone.track --measured curve.csv --seat-load '40 kN' --fit gamma,beta
+  trackbed calibrate scenarios/transition_short.track --grains --out on_grains.track")]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
     /// CSV file with the columns `axles` and `settlement_mm` (or another unit).
-    #[arg(long, value_name = "CSV")]
-    measured: PathBuf,
+    #[arg(long, value_name = "CSV", required_unless_present = "grains")]
+    measured: Option<PathBuf>,
+    #[command(flatten)]
+    grains: calibrate_grains::GrainArguments,
     /// The peak force of every wheel on the support of a half sleeper, e.g. '40 kN'; by default that of one passage of
     /// the scene.
-    #[arg(long, value_name = "FORCE", value_parser = force)]
+    #[arg(long, value_name = "FORCE", value_parser = force, conflicts_with = "grains")]
     seat_load: Option<f64>,
     /// The sleeper whose wheel peaks act, e.g. -20; by default the one farthest from every transition.
-    #[arg(long, value_name = "SLEEPER", allow_hyphen_values = true)]
+    #[arg(long, value_name = "SLEEPER", allow_hyphen_values = true, conflicts_with = "grains")]
     sleeper: Option<String>,
     /// The arguments of the law to fit, e.g. gamma,beta; by default those that one force lets tell apart.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with = "grains")]
     fit: Vec<String>,
     #[arg(long, value_enum, default_value = "human")]
     format: Format,
@@ -48,26 +52,33 @@ struct Acting {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
+    match &arguments.measured {
+        Some(measured) => to_curve(arguments, measured),
+        None => calibrate_grains::run(&arguments.scene, &arguments.grains, arguments.format),
+    }
+}
+
+fn to_curve(arguments: &Arguments, file: &Path) -> Outcome {
     let Some(mut compiled) = arguments.scene.compile() else { return Outcome::Usage };
     show(&compiled);
     if failed(&compiled) {
         return Outcome::Failed;
     }
     let Some(scenario) = compiled.scenario.take() else { return not_yet(&compiled) };
-    let law = &scenario.solve.law;
+    let (law, name) = (&scenario.solve.law, file.display().to_string());
     let found = wanted(law, &arguments.fit).and_then(|wanted| {
-        let (curve, file) = read(arguments, &mut compiled, wanted.len() + 1)?;
+        let (curve, file) = read(file, &mut compiled, wanted.len() + 1)?;
         let acting = acting(arguments, &compiled, &scenario)?;
         let measured = Measured { wheels: acting.wheels, axles: curve.axles, settlement: curve.settlement };
         let fitted = settlement::calibrate(&law.law, &wanted, &measured);
         let (fitted, fit) = fitted.map_err(|error| vec![refused(&error, law, &wanted, &measured, file)])?;
-        Ok(Calibration { law, wanted, measured, described: acting.described, fitted, fit })
+        Ok(Calibration { law, wanted, measured, described: acting.described, fitted, fit, name: name.clone() })
     });
     match found {
         Ok(calibration) => {
             terminal::out(&match arguments.format {
-                Format::Human => calibration.text(arguments),
-                Format::Json => format!("{:#}\n", calibration.json(arguments)),
+                Format::Human => calibration.text(),
+                Format::Json => format!("{:#}\n", calibration.json()),
             });
             Outcome::Fine
         }
@@ -123,14 +134,10 @@ fn wanted(law: &SettlementLaw, names: &[String]) -> Result<Vec<Wanted>, Vec<Diag
     if mistakes.is_empty() { Ok(wanted) } else { Err(mistakes) }
 }
 
-fn read(
-    arguments: &Arguments,
-    compiled: &mut Compiled,
-    least: usize,
-) -> Result<(MeasuredCurve, FileId), Vec<Diagnostic>> {
-    let name = arguments.measured.display().to_string();
+fn read(measured: &Path, compiled: &mut Compiled, least: usize) -> Result<(MeasuredCurve, FileId), Vec<Diagnostic>> {
+    let name = measured.display().to_string();
     let refused = |message: String| vec![Diagnostic::new(Code::E0805, message)];
-    let bytes = check::read_bounded(&arguments.measured).map_err(|e| refused(format!("cannot read `{name}`: {e}")))?;
+    let bytes = check::read_bounded(measured).map_err(|e| refused(format!("cannot read `{name}`: {e}")))?;
     let text = crate::syntax::decode(&name, &bytes).map_err(|mistake| refused(mistake.message))?;
     let file = compiled.sources.add(name, text.as_str(), false);
     let (curve, diagnostics) = measured_curve(file, &text, least);
@@ -144,7 +151,7 @@ fn acting(arguments: &Arguments, compiled: &Compiled, scenario: &Scenario) -> Re
     let name = track.seat_name(&track.seats[seat]);
     if let Some(force) = arguments.seat_load {
         let stiffness = supports(scenario)[seat].support.map_or(f64::INFINITY, |support| support.stiffness);
-        let peak = Peak { force, deflection: force / stiffness };
+        let peak = Peak { force, deflection: force / stiffness, void: 0.0 };
         let described = format!("{} kN per seat under every wheel", number(force / 1e3));
         return Ok(Acting { wheels: vec![peak; 4], described });
     }
@@ -233,6 +240,24 @@ fn refused(error: &FitError, law: &SettlementLaw, wanted: &[Wanted], measured: &
     }
 }
 
+/// A form with its arguments in the notation of the language.
+pub(super) fn form_as_text(mut form: Form) -> String {
+    let name = form.name();
+    let arguments = form.parameters().into_iter();
+    let mut values: Vec<String> =
+        arguments.map(|(argument, value)| format!("{argument} = {}", law_argument(name, argument, *value))).collect();
+    if let Form::Hettler(hettler) = form {
+        let word = if hettler.logarithm == Logarithm::Decimal { "decimal" } else { "natural" };
+        values.push(format!("logarithm = {word}"));
+    }
+    format!("{name}({})", values.join(", "))
+}
+
+/// The name of a file without its folder, for a text of the language.
+pub(super) fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().replace(['"', '\\'], "'"))
+}
+
 fn tenths(value: f64) -> String {
     number((value * 10.0).round() / 10.0)
 }
@@ -245,15 +270,17 @@ struct Calibration<'a> {
     described: String,
     fitted: Law,
     fit: Fit,
+    /// Path of the measured curve.
+    name: String,
 }
 
 impl Calibration<'_> {
-    fn text(&self, arguments: &Arguments) -> String {
+    fn text(&self) -> String {
         let form = self.law.law.form.name();
         let mut out = format!(
             "law {} ({form}) on {}: {} measurements, {} .. {} axles\nforce: {}\n\n",
             self.law.name,
-            arguments.measured.display(),
+            self.name,
             self.measured.axles.len(),
             self.measured.axles.first().copied().unwrap_or(0),
             self.measured.axles.last().copied().unwrap_or(0),
@@ -278,7 +305,7 @@ impl Calibration<'_> {
         for ((axles, measured), fitted) in self.measured.axles.iter().zip(&self.measured.settlement).zip(self.curve()) {
             out.push_str(&format!("  {axles:>14}{:>16.4}{:>16.4}\n", measured * 1e3, fitted * 1e3));
         }
-        out.push_str(&format!("\n{}", self.declaration(arguments)));
+        out.push_str(&format!("\n{}", self.declaration()));
         out
     }
 
@@ -287,38 +314,27 @@ impl Calibration<'_> {
     }
 
     /// A `law` that can be pasted into a scene.
-    fn declaration(&self, arguments: &Arguments) -> String {
-        let mut law = self.fitted;
-        let form = law.form.name();
-        let mut values: Vec<String> = law
-            .form
-            .parameters()
-            .into_iter()
-            .map(|(name, value)| format!("{name} = {}", law_argument(form, name, *value)))
-            .collect();
-        if let Form::Hettler(hettler) = law.form {
-            let word = if hettler.logarithm == Logarithm::Decimal { "decimal" } else { "natural" };
-            values.push(format!("logarithm = {word}"));
-        }
+    fn declaration(&self) -> String {
+        let law = self.fitted;
         let forces = || self.measured.wheels.iter().map(|peak| peak.force / 1e3);
         let (least, most) = (forces().fold(f64::INFINITY, f64::min).floor(), forces().fold(0.0, f64::max).ceil());
         let loads = if least < most { format!("  loads     = {least} .. {most} kN per seat\n") } else { String::new() };
         let (first, last) = (self.measured.axles.first(), self.measured.axles.last());
         format!(
-            "law {}_fitted {{\n  form      = {form}({})\n  cycle_per = {}\n{loads}  cycles    = {} .. {} axles\n  \
+            "law {}_fitted {{\n  form      = {}\n  cycle_per = {}\n{loads}  cycles    = {} .. {} axles\n  \
              source    = \"{} fitted to {} by trackbed calibrate, rms error {} mm\"\n  evidence  = derived\n}}\n",
             self.law.name,
-            values.join(", "),
+            form_as_text(law.form),
             law.cycle_per.name(),
             first.copied().unwrap_or(0),
             last.copied().unwrap_or(0),
             self.law.name,
-            arguments.measured.file_name().map_or_else(String::new, |n| n.to_string_lossy().replace(['"', '\\'], "'")),
+            file_name(Path::new(&self.name)),
             number(self.fit.rms * 1e3)
         )
     }
 
-    fn json(&self, arguments: &Arguments) -> serde_json::Value {
+    fn json(&self) -> serde_json::Value {
         let form = self.law.law.form.name();
         let parameters: Vec<_> = self
             .wanted
@@ -346,7 +362,7 @@ impl Calibration<'_> {
             "parameters": parameters,
             "rms_m": self.fit.rms,
             "curve": curve,
-            "declaration": self.declaration(arguments),
+            "declaration": self.declaration(),
         })
     }
 }

@@ -4,6 +4,7 @@
 
 mod bench;
 mod calibrate;
+mod calibrate_grains;
 mod chart;
 mod chart_runs;
 mod check;

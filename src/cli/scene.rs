@@ -67,12 +67,17 @@ impl SceneArguments {
 
     /// Writes an answer to a file, which must not be the scene; or says why not.
     pub fn write_beside(&self, out: &Path, bytes: &[u8]) -> Result<(), String> {
-        let name = out.display();
+        self.is_beside(out)?;
+        write_atomically(out, bytes).map_err(|error| format!("cannot write `{}`: {error}", out.display()))
+    }
+
+    /// Fails if a file is the scene.
+    pub fn is_beside(&self, out: &Path) -> Result<(), String> {
         let is_scene = self.file.canonicalize().is_ok_and(|scene| out.canonicalize().is_ok_and(|out| out == scene));
         if is_scene {
-            return Err(format!("`{name}` is the scene itself; name another file after `--out`"));
+            return Err(format!("`{}` is the scene itself; name another file after `--out`", out.display()));
         }
-        write_atomically(out, bytes).map_err(|error| format!("cannot write `{name}`: {error}"))
+        Ok(())
     }
 
     /// Where its modules and data lie.

@@ -135,6 +135,7 @@ codes! {
     E0814 Error "track that has sunk"
     E0815 Error "work that a cluster does not do"
     E0816 Error "run that outgrows its memory"
+    E0817 Error "law beyond its range"
     L1001 Warning "stiffness jump without mitigation"
     L1002 Warning "speed near the critical speed"
     L1003 Warning "track too short for its train"

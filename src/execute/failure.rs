@@ -38,6 +38,7 @@ fn of_node(clock: Clock, cause: &NodeError, graph: &Graph, origins: &Origins) ->
         NodeError::Foreign { .. } => said(Code::E0803).help("run with `--force`"),
         NodeError::NoBuilder { .. } => said(Code::E0604),
         NodeError::Sunk { seat, .. } => of_sunk(clock, *seat, cause, graph, origins),
+        NodeError::BeyondLaw { seat, .. } => of_law(clock, *seat, cause, graph, origins),
         NodeError::NoGround | NodeError::NoTrain | NodeError::Stopped | NodeError::Other { .. } => said(Code::E0801),
     }
 }
@@ -49,6 +50,17 @@ fn of_sunk(clock: Clock, seat: usize, cause: &NodeError, graph: &Graph, origins:
     let said = said.help("check the parameters of the `law` and their units, or give the traffic a `tamping`");
     let labels = [scene.place(x), scene.support(x)];
     labels.into_iter().filter_map(|(span, text)| Some((span?, text))).fold(said, |d, (span, text)| d.label(span, text))
+}
+
+fn of_law(clock: Clock, seat: usize, cause: &NodeError, graph: &Graph, origins: &Origins) -> Diagnostic {
+    let scene = Scene { graph, origins };
+    let x = graph.track().and_then(|track| track.seats.get(seat)).map_or(0.0, |seat| seat.x);
+    let said = Diagnostic::new(Code::E0817, format!("after {clock}: {cause}")).help(
+        "fit the law over a larger range with `trackbed calibrate --grains` (`--loads`, `--voids`), or remove its `error` to use it as \
+         an extrapolation",
+    );
+    let (span, text) = scene.place(x);
+    span.map_or(said.clone(), |span| said.label(span, text))
 }
 
 fn of_track(clock: Clock, cause: &TrackError, graph: &Graph, origins: &Origins) -> Diagnostic {

@@ -67,6 +67,19 @@ pub struct CellPlan {
 }
 
 impl CellPlan {
+    /// Data that determine how a cell is built. The place of its seat and the soil below do not matter, so cells that
+    /// differ only in these are built once.
+    pub fn anywhere(&self) -> CellPlan {
+        let mut plan = CellPlan { x: 0.0, soil: None, ..self.clone() };
+        plan.sleepers.iter_mut().for_each(|sleeper| sleeper.seat = 0);
+        plan
+    }
+
+    /// Whether two cells are built alike.
+    pub fn is_built_alike(&self, other: &CellPlan) -> bool {
+        self.anywhere() == other.anywhere()
+    }
+
     /// The seat whose forces load the sleeper in the middle.
     pub fn seat(&self) -> usize {
         self.sleepers[self.middle].seat

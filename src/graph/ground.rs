@@ -40,4 +40,16 @@ pub struct NamedLaw {
     pub law: Law,
     /// Form and parameters of the law as text.
     pub details: String,
+    /// Bounds of a fitted law; `None` for a law that may be extrapolated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bounds: Option<LawBounds>,
+}
+
+/// The largest values up to which a fitted law holds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LawBounds {
+    /// Peak force of a wheel on a support, N.
+    pub force: f64,
+    /// Void under a sleeper, m.
+    pub void: f64,
 }

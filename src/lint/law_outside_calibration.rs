@@ -3,7 +3,7 @@
 use super::led;
 use super::winkler::{SeatLoad, seat_loads};
 use super::{laws, pointed};
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Severity};
 use crate::graph::Graph;
 use crate::scenario::{Scenario, SettlementLaw};
 use crate::units::number;
@@ -28,7 +28,18 @@ fn beyond_cycles(scenario: &Scenario, law: &SettlementLaw, total: u64) -> Option
         format!("law `{}` is calibrated up to {} axles, but the run has {total}", law.name, number(most)),
     )
     .help("read the settlement beyond that count as an extrapolation, or choose a law for more axles");
-    Some(pointed(diagnostic, scenario, law, "this law"))
+    Some(refused(pointed(diagnostic, scenario, law, "this law"), law))
+}
+
+/// A law that was fitted and states its error does not hold outside: the mistake is an error.
+fn refused(diagnostic: Diagnostic, law: &SettlementLaw) -> Diagnostic {
+    match law.error {
+        Some(_) => diagnostic.severity(Severity::Error).help(
+            "fit the law to these loads and counts with `trackbed calibrate --grains`, or remove its `error` to use it \
+             as an extrapolation",
+        ),
+        None => diagnostic,
+    }
 }
 
 fn beyond_loads(scenario: &Scenario, law: &SettlementLaw, seat: &SeatLoad) -> Option<Diagnostic> {
@@ -45,5 +56,5 @@ fn beyond_loads(scenario: &Scenario, law: &SettlementLaw, seat: &SeatLoad) -> Op
         ),
     )
     .help("choose a law that covers these loads, or read its settlement as an extrapolation");
-    Some(pointed(diagnostic, scenario, law, "this law"))
+    Some(refused(pointed(diagnostic, scenario, law, "this law"), law))
 }

@@ -92,6 +92,6 @@ pub(super) fn seat_load(scenario: &Scenario, graph: &Graph, traffic: Led<'_>, se
     let spacing = track.bay(first);
     let support = graph.supports.get(first)?.support?;
     let force = wheel * winkler.seat_share(spacing) + winkler.mass * spacing * gravity;
-    let peak = Peak { force, deflection: force / support.stiffness };
+    let peak = Peak { force, deflection: force / support.stiffness, void: 0.0 };
     Some(SeatLoad { section, winkler, spacing, wheel, peak })
 }

@@ -217,7 +217,7 @@ impl Stretch {
             let [force, apart] = bogie.wheels;
             let forces = forces_under_wheels(&self.track, &level, [times * force, apart], &self.seats);
             let forces = forces.unwrap_or_else(|_| vec![[0.0; 2]; self.seats.len()]);
-            forces.into_iter().map(|[force, deflection]| Peak { force, deflection }).collect()
+            forces.into_iter().map(|[force, deflection]| Peak { force, deflection, void: 0.0 }).collect()
         };
         self.wheels.iter().map(|kind| kind.iter().map(under).collect()).collect()
     }

@@ -1,6 +1,6 @@
 //! Errors of a node.
 
-use crate::graph::BedError;
+use crate::graph::{BedError, LawBounds};
 use crate::solvers::continuum::SoilError;
 use crate::solvers::granular::Failure;
 use crate::solvers::granular::packing::PackingError;
@@ -34,6 +34,8 @@ pub enum NodeError {
     NoBuilder { node: String, kind: String },
     /// A seat whose settlement (m) is larger than the thickness of the ballast below it.
     Sunk { seat: usize, settlement: f64 },
+    /// A fitted law at a seat whose peak force (N) or void (m) is outside its range.
+    BeyondLaw { law: String, seat: usize, found: LawBounds, bounds: LawBounds },
     /// A listener has ended the run, before its first step or in the middle of a block. The run can continue from the
     /// state stored before.
     Stopped,
@@ -55,6 +57,18 @@ impl fmt::Display for NodeError {
             NodeError::Sunk { settlement, .. } => {
                 write!(f, "a sleeper has settled by {settlement:.2} m, more than the thickness of the ballast below it")
             }
+            NodeError::BeyondLaw { law, found, bounds, .. } if found.force > bounds.force => write!(
+                f,
+                "a wheel loads a support by {:.1} kN, and law `{law}` was fitted up to {:.1} kN",
+                found.force / 1e3,
+                bounds.force / 1e3
+            ),
+            NodeError::BeyondLaw { law, found, bounds, .. } => write!(
+                f,
+                "the void under a sleeper is {:.2} mm, and law `{law}` was fitted up to {:.2} mm",
+                found.void * 1e3,
+                bounds.void * 1e3
+            ),
             NodeError::Stopped => f.write_str("the run was stopped"),
             NodeError::Foreign { node, why } => write!(f, "the kept state of the {node} cannot be used: {why}"),
             NodeError::NoBuilder { node, kind } => {

@@ -1,14 +1,16 @@
 //! The ground where no grains carry the sleepers: springs that do not settle, or a settlement law under each seat.
 
 use super::{Load, Mark, NodeError, Substructure};
-use crate::graph::{LawNode, NamedLaw, Responses, SupportNode};
-use crate::solvers::settlement::{Law, SupportState};
+use crate::graph::{LawBounds, LawNode, NamedLaw, Responses, SupportNode};
+use crate::solvers::settlement::{Law, Peak, SupportState};
 use serde::{Deserialize, Serialize};
 
 /// Springs with laws that settle them; without a law nothing settles.
 pub struct LawGround<'a> {
     /// The driving one first.
     laws: Vec<&'a Law>,
+    /// Name and bounds of the driving law, if it has bounds.
+    bounded: Option<(&'a str, LawBounds)>,
     /// Indices of the seats that settle.
     seats: Vec<usize>,
     /// Settlement of every seat at the start, m.
@@ -34,7 +36,8 @@ impl<'a> LawGround<'a> {
     /// Supports under laws, as the scene starts them.
     pub fn law(node: &'a LawNode) -> LawGround<'a> {
         let laws = std::iter::once(&node.law).chain(&node.followers).map(|named: &NamedLaw| &named.law).collect();
-        LawGround::new(&node.supports, laws)
+        let bounded = node.law.bounds.map(|bounds| (node.law.name.as_str(), bounds));
+        LawGround { bounded, ..LawGround::new(&node.supports, laws) }
     }
 
     fn new(supports: &[SupportNode], laws: Vec<&'a Law>) -> LawGround<'a> {
@@ -45,7 +48,7 @@ impl<'a> LawGround<'a> {
             level: vec![initial.clone(); laws.len()],
         };
         let responses = Responses { revision: 0, seats: supports.iter().map(|support| support.spring).collect() };
-        LawGround { laws, seats, initial, responses, state }
+        LawGround { laws, bounded: None, seats, initial, responses, state }
     }
 
     fn settlements(&self, state: &State) -> Vec<Vec<f64>> {
@@ -58,6 +61,19 @@ impl<'a> LawGround<'a> {
             settlement[*seat] += support.settlement();
         }
         settlement
+    }
+
+    /// Fails if a wheel loads a support beyond the bounds of the law.
+    fn within_bounds(&self, loads: &[Load<'_>]) -> Result<(), NodeError> {
+        let Some((law, bounds)) = self.bounded else { return Ok(()) };
+        let beyond = |peak: &Peak| peak.force > bounds.force || peak.void > bounds.void;
+        let at_seat = |load: &Load<'_>, seat: usize| load.peaks()[seat].iter().copied().find(beyond);
+        let found =
+            loads.iter().find_map(|load| self.seats.iter().find_map(|seat| Some((*seat, at_seat(load, *seat)?))));
+        found.map_or(Ok(()), |(seat, peak)| {
+            let found = LawBounds { force: peak.force, void: peak.void };
+            Err(NodeError::BeyondLaw { law: law.to_owned(), seat, found, bounds })
+        })
     }
 
     fn load(&self, state: &mut State, laws: usize, loads: &[Load<'_>]) {
@@ -97,6 +113,7 @@ impl Substructure for LawGround<'_> {
     }
 
     fn advance(&mut self, loads: &[Load<'_>]) -> Result<(), NodeError> {
+        self.within_bounds(loads)?;
         let mut state = std::mem::replace(&mut self.state, State { supports: Vec::new(), level: Vec::new() });
         self.load(&mut state, self.laws.len(), loads);
         self.state = state;

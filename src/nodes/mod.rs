@@ -22,7 +22,7 @@ pub use build::Builders;
 pub use error::NodeError;
 pub use grains::{BedUnderActuators, TestState, Tested};
 pub use law::LawGround;
-pub use on_cells::{CellGround, Parts as CellParts};
+pub use on_cells::{CellGround, Parts as CellParts, Passed, Specimen, TrainForces};
 pub use on_grains::{
     BedUnderTrack, Following, GrainGround, Parted, Parts as GrainParts, PassageEnergy, Riders, Stage, Telling,
     TimedSteps, Told, VolumeSample,

@@ -78,11 +78,11 @@ impl StandingBogies {
             .collect();
         let of_task = |(kind, bogie, row): &(usize, usize, &Row)| row.forces(settlement, &self.kinds[*kind][*bogie]);
         let found: Vec<Result<Vec<[f64; 2]>, TrackError>> = tasks.par_iter().map(of_task).collect();
-        let none = vec![Peak { force: 0.0, deflection: 0.0 }; settlement.len()];
+        let none = vec![Peak::default(); settlement.len()];
         let mut forces: Vec<Vec<Vec<Peak>>> = self.kinds.iter().map(|kind| vec![none.clone(); kind.len()]).collect();
         for ((kind, bogie, row), found) in tasks.into_iter().zip(found) {
             for ([force, deflection], seat) in found?.into_iter().zip(&row.seats) {
-                forces[kind][bogie][row.first + seat] = Peak { force, deflection };
+                forces[kind][bogie][row.first + seat] = Peak { force, deflection, void: 0.0 };
             }
         }
         Ok(StandingForces(forces))

@@ -117,7 +117,7 @@ impl<'a> TrackSystem<'a> {
         let samplers = &mut (&mut force_sampler, &mut wheel_sampler);
         let counters = passage.run(&mut (&mut envelope, &mut (&mut sampler, samplers)))?;
 
-        let seats = self.at_seats(&envelope, plan.passed(train));
+        let seats = self.at_seats(&envelope, &unloaded.seats, plan.passed(train));
         let outcome = PassageOutcome {
             time_steps: counters.steps as u64,
             newton_iterations: counters.iterations as u64,
@@ -168,8 +168,13 @@ impl<'a> TrackSystem<'a> {
     }
 
     /// Extremes of every seat, and the largest force of each wheel on its support, as if trains came from far away.
-    fn at_seats(&self, envelope: &Envelope, passed: Range<f64>) -> (Vec<SeatOutcome>, Vec<Vec<Peak>>) {
-        let (mut outcomes, mut peaks) = at_seats(envelope, self.node.seats.len());
+    fn at_seats(
+        &self,
+        envelope: &Envelope,
+        unloaded: &[UnloadedSeat],
+        passed: Range<f64>,
+    ) -> (Vec<SeatOutcome>, Vec<Vec<Peak>>) {
+        let (mut outcomes, mut peaks) = at_seats(envelope, unloaded);
         self.complete(passed, &mut outcomes, &mut peaks);
         (outcomes, peaks)
     }
@@ -225,12 +230,14 @@ fn mean_peaks(peaks: &[Vec<Peak>], from: &[usize]) -> Vec<Peak> {
     let of_wheel = |wheel: usize| Peak {
         force: mean(&|n| peaks[n][wheel].force),
         deflection: mean(&|n| peaks[n][wheel].deflection),
+        void: mean(&|n| peaks[n][wheel].void),
     };
     (0..peaks[from[0]].len()).map(of_wheel).collect()
 }
 
 /// Extremes of every seat over a passage, and the largest force of each wheel of the train on its support.
-fn at_seats(envelope: &Envelope, seats: usize) -> (Vec<SeatOutcome>, Vec<Vec<Peak>>) {
+fn at_seats(envelope: &Envelope, unloaded: &[UnloadedSeat]) -> (Vec<SeatOutcome>, Vec<Vec<Peak>>) {
+    let seats = unloaded.len();
     let outcome = |i: usize| SeatOutcome {
         max_rail_seat_load: envelope.seat_loads[i].1,
         max_contact_force: envelope.contact_forces[i],
@@ -240,7 +247,8 @@ fn at_seats(envelope: &Envelope, seats: usize) -> (Vec<SeatOutcome>, Vec<Vec<Pea
     let peaks_of = |seat: usize| {
         let deflections = envelope.axle_deflections_of(seat);
         let wheels = envelope.axle_peaks_of(seat).iter().zip(deflections);
-        wheels.map(|(force, deflection)| Peak { force: *force, deflection: *deflection }).collect()
+        let void = unloaded[seat].void;
+        wheels.map(|(force, deflection)| Peak { force: *force, deflection: *deflection, void }).collect()
     };
     ((0..seats).map(outcome).collect(), (0..seats).map(peaks_of).collect())
 }

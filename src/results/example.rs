@@ -30,7 +30,15 @@ fn solve() -> Solve {
     let form = Form::Varandas(Varandas { gamma: 4.9e-9, reference_cycles: 1.0, ..Varandas::default() });
     let law = Law { form, cycle_per: CyclePer::Axle };
     Solve {
-        law: SettlementLaw { name: "varandas".to_owned(), law, loads: None, cycles: None, origin: Origin::Default },
+        law: SettlementLaw {
+            name: "varandas".to_owned(),
+            law,
+            loads: None,
+            cycles: None,
+            voids: None,
+            error: None,
+            origin: Origin::Default,
+        },
         other_laws: vec![],
         update: Update::Fixed { axles: 20 },
         update_span: None,

@@ -15,6 +15,11 @@ pub struct SettlementLaw {
     pub loads: Option<(f64, f64)>,
     /// Range of axle counts for which the law was calibrated.
     pub cycles: Option<(f64, f64)>,
+    /// Range of voids for which the law was calibrated, m.
+    pub voids: Option<(f64, f64)>,
+    /// Largest error against what the law was fitted to / largest settlement; a law that states it is not used beyond
+    /// its ranges.
+    pub error: Option<f64>,
     /// Place in the text that names the law.
     pub origin: Origin,
 }

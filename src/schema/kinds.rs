@@ -489,6 +489,12 @@ pub const KINDS: &[Kind] = &[
                 Form::Interval(measure("axles", 0.0, 1e12)),
                 "axle counts for which the law was calibrated",
             ),
+            optional("voids", Form::Interval(measure("mm", 0.0, 100.0)), "voids for which the law was calibrated"),
+            optional(
+                "error",
+                number("%", 0.0, 1000.0),
+                "largest error against what the law was fitted to / largest settlement; a law that states it is refused beyond its `loads`, `cycles` and `voids`",
+            ),
             default(
                 "cycle_per",
                 Form::Words(&[

@@ -113,12 +113,18 @@ pub(super) const FORMS: &[Word] = &[
     ),
     law(
         "power",
-        "user-defined law: S = a (F/F0)^m N^b",
+        "user-defined law, or one that `trackbed calibrate --grains` fits: S = a (F/F0)^m e^(-g v) N^b; v is the void under the sleeper",
         &[
             required("a", number("mm", 1e-9, 1000.0), "settlement in the first cycle of `reference_force`"),
             required("m", EXPONENT, "exponent of the force"),
             required("b", number("", 1e-3, 1.0), "exponent of the number of cycles"),
             required("reference_force", FORCE, "F0: reference force"),
+            default(
+                "g",
+                number("mm^-1", -20.0, 20.0),
+                "0 mm^-1",
+                "rate at which settlement decreases with the void; 0: only the force counts",
+            ),
         ],
     ),
 ];

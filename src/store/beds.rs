@@ -100,21 +100,42 @@ impl Beds {
         hash: &str,
         build: impl FnOnce() -> Result<T, E>,
     ) -> Result<T, E> {
-        let Some(shelf) = self.folder().map(|folder| Shelf::new(folder, BUILT)) else { return build() };
-        // without a lock two processes may build the same
+        self.found(BUILT, BUILT_KEPT, hash, build)
+    }
+
+    /// A measurement on a bed, by its hash, in the same way. It is a few numbers, so many are stored.
+    pub fn measured<T: Serialize + DeserializeOwned, E>(
+        &self,
+        hash: &str,
+        measure: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E> {
+        self.found(MEASURED, MEASURED_KEPT, hash, measure)
+    }
+
+    fn found<T: Serialize + DeserializeOwned, E>(
+        &self,
+        kind: &'static str,
+        newest: usize,
+        hash: &str,
+        make: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E> {
+        let Some(shelf) = self.folder().map(|folder| Shelf::new(folder, kind)) else { return make() };
+        // without a lock two processes may make the same
         let _turn = shelf.lock(hash);
         if let Ok(Some(there)) = shelf.get(hash) {
             return Ok(there);
         }
-        let built = build()?;
-        let _ = shelf.put(hash, &built).and_then(|()| shelf.keep_newest(BUILT_KEPT, hash));
-        Ok(built)
+        let made = make()?;
+        let _ = shelf.put(hash, &made).and_then(|()| shelf.keep_newest(newest, hash));
+        Ok(made)
     }
 }
 
 /// The kind of values that are built on beds, and the number of stored values.
 const BUILT: &str = "track";
 const BUILT_KEPT: usize = 4;
+const MEASURED: &str = "curve";
+const MEASURED_KEPT: usize = 1000;
 
 /// Packs a bed and stores it. In both cases the run continues from the stored form, so the result does not depend on
 /// whether the bed was stored before.

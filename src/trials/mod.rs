@@ -3,6 +3,7 @@
 //! [`chart`] runs one passage over the settled track with many numerics and sets error against time; [`stability`]
 //! tries extreme numerics, contacts and voids, and a list of hard scenes, and reports the result of each. [`grains`]
 //! measures the cost of steps of a bed of grains. [`runs`] compares whole runs of a scene by every tier.
+//! [`specimens`] fits a settlement law to the grains of a scene.
 
 pub mod chart;
 mod clock;
@@ -10,6 +11,7 @@ pub mod grains;
 mod planned;
 pub mod runs;
 mod settled;
+pub mod specimens;
 pub mod stability;
 mod stress;
 mod tables;

@@ -67,9 +67,19 @@ fn settlement_law(slot: &Slot, findings: &mut Findings) -> Option<SettlementLaw>
         Some(Val::Range(a, b)) => Some((a.of_rail(), b.of_rail())),
         _ => None,
     };
-    let (loads, cycles) = (range("loads"), range("cycles"));
-    let law = Law { form, cycle_per };
-    Some(SettlementLaw { name: record.name.clone(), law, loads, cycles, origin: slot.origin })
+    let error = match record.get("error").map(|slot| &slot.value) {
+        Some(Val::Number(error)) => Some(error.value),
+        _ => None,
+    };
+    Some(SettlementLaw {
+        name: record.name.clone(),
+        law: Law { form, cycle_per },
+        loads: range("loads"),
+        cycles: range("cycles"),
+        voids: range("voids"),
+        error,
+        origin: slot.origin,
+    })
 }
 
 /// Checks that the arguments do not contradict each other.

@@ -1,12 +1,14 @@
 //! Tier `law`: a settlement law under each sleeper, published or fitted.
 
+use super::cells::OF_CELLS;
 use super::{Proposal, Tier, edges};
-use crate::graph::{ExpectedError, LawNode, Model, NamedLaw, Node, Schedule};
+use crate::graph::{ExpectedError, LawBounds, LawNode, Model, NamedLaw, Node, Schedule};
 use crate::lower::outlook::Outlook;
 use crate::lower::{Draft, accuracy, cost, supports, track};
 use crate::scenario::{Loading, Scenario, SettlementLaw, law_argument};
 use crate::schema::Reads;
 use crate::solvers::settlement::{Form, Logarithm};
+use crate::units::percent;
 
 pub struct SettlementLaws;
 
@@ -17,6 +19,8 @@ const READS: Reads = Reads {
         "law.form",
         "law.loads",
         "law.cycles",
+        "law.voids",
+        "law.error",
         "law.cycle_per",
         "support.damping",
         "support.damping_time",
@@ -72,8 +76,19 @@ impl Tier for SettlementLaws {
     }
 }
 
-/// Error of a published law, against grains where the scene has a layer of them.
+/// Error of the law, against grains where the scene has a layer of them.
 fn of_law(scenario: &Scenario) -> ExpectedError {
+    let law = &scenario.solve.law;
+    if let Some(error) = law.error {
+        let evidence = format!(
+            "law `{}` states an error of {} against the cells to which it was fitted, and cells settle by up to {} \
+             less than a whole bed",
+            law.name,
+            percent(error),
+            percent(OF_CELLS)
+        );
+        return ExpectedError { numerical: None, of_tier: Some(error + OF_CELLS), evidence };
+    }
     let has_grains =
         scenario.track.sections.iter().any(|section| section.layers.iter().any(|l| l.granular().is_some()));
     ExpectedError {
@@ -92,7 +107,9 @@ fn stands_on_layers(scenario: &Scenario) -> bool {
 }
 
 fn named(law: &SettlementLaw) -> NamedLaw {
-    NamedLaw { name: law.name.clone(), law: law.law, details: describe(law) }
+    let most = |range: Option<(f64, f64)>| range.map_or(f64::INFINITY, |(_, most)| most);
+    let bounds = law.error.map(|_| LawBounds { force: most(law.loads), void: most(law.voids) });
+    NamedLaw { name: law.name.clone(), law: law.law, details: describe(law), bounds }
 }
 
 /// The form of a law with its parameters in the notation of the language, for half a sleeper.

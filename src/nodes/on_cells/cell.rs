@@ -52,7 +52,7 @@ pub(super) struct Cell {
 
 /// Effect of a train on the sleeper in the middle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Passed {
+pub struct Passed {
     /// m.
     pub added: f64,
     /// Secant of its largest force, N/m; `None` if the train hardly loads the cell.

@@ -1,6 +1,7 @@
 //! Forces of a train on the sleepers of a cell at equal intervals, for one train among others or one train alone.
 
 use crate::nodes::SeatForces;
+use serde::Serialize;
 
 /// A train alone begins and ends so long before and after its forces differ from those at rest, s.
 const MARGIN: f64 = 0.02;
@@ -8,7 +9,7 @@ const MARGIN: f64 = 0.02;
 const DIFFERS: f64 = 0.02;
 
 /// Forces on the sleepers of a cell while one train passes; the next one may follow at once.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrainForces {
     /// Time between two values, s.
     pub interval: f64,

@@ -10,6 +10,7 @@ mod cell;
 mod forces;
 mod hardening;
 mod layout;
+mod specimen;
 mod stored;
 
 use super::on_grains::{Following, Stage, Telling, going_on, tell_stage_and_state};
@@ -18,11 +19,13 @@ use super::{Bonds, Forces, Load, Mark, NodeError, Substructure};
 use crate::graph::{CellPlan, CellsNode, Responses, SeatOnCell};
 use crate::store::{Beds, recipe_hash};
 use book::{Book, laws};
-use cell::{Cell, Passed};
-use forces::TrainForces;
+use cell::Cell;
+pub use cell::Passed;
+pub use forces::TrainForces;
 use hardening::Jump;
 use layout::Layout;
 use serde::{Deserialize, Serialize};
+pub use specimen::Specimen;
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
@@ -174,27 +177,9 @@ impl Live {
         let node = parts.cells;
         let (mut cells, mut books): (Vec<Cell>, Vec<Book>) = (Vec::new(), Vec::new());
         for (number, plan) in node.cells.iter().enumerate() {
-            let (cell, book) = match node.cells[..number].iter().position(|other| anywhere(plan) == anywhere(other)) {
+            let (cell, book) = match node.cells[..number].iter().position(|other| plan.is_built_alike(other)) {
                 Some(built) => (cells[built].clone(), books[built].clone()),
-                None => {
-                    let hash = recipe_hash(&(
-                        METHOD,
-                        anywhere(plan),
-                        &node.beds[plan.bed],
-                        node.gravity,
-                        node.time_step,
-                        node.added_inertia,
-                    ));
-                    let build = || {
-                        let cell = Cell::build(plan, node, parts.beds, tell)?;
-                        going_on(tell(Stage::StaticLoad, 0.0))?;
-                        Ok((cell.store(), cell.pressed(node.gravity)?))
-                    };
-                    // later results must not depend on whether the cell was built before: both cases continue from the
-                    // stored state
-                    let (stored, stiffness) = parts.beds.built::<_, NodeError>(&hash, build)?;
-                    (Cell::restore(stored, plan.sleepers.len())?, Book::new(stiffness))
-                }
+                None => built(parts, plan, tell)?,
             };
             cells.push(cell);
             books.push(book);
@@ -318,12 +303,24 @@ impl Live {
     }
 }
 
-/// Data that determine how a cell is built. The place of its seat and the soil below do not matter, so cells that
-/// differ only in these are built once.
-fn anywhere(plan: &CellPlan) -> CellPlan {
-    let mut plan = CellPlan { x: 0.0, soil: None, ..plan.clone() };
-    plan.sleepers.iter_mut().for_each(|sleeper| sleeper.seat = 0);
-    plan
+/// The key of a cell in the store.
+fn recipe(parts: Parts<'_>, plan: &CellPlan) -> String {
+    let node = parts.cells;
+    let bed = &node.beds[plan.bed];
+    recipe_hash(&(METHOD, plan.anywhere(), bed, node.gravity, node.time_step, node.added_inertia))
+}
+
+/// A cell that no train has passed, from the store if it was built before.
+fn built(parts: Parts<'_>, plan: &CellPlan, tell: &mut Telling<'_>) -> Result<(Cell, Book), NodeError> {
+    let (node, hash) = (parts.cells, recipe(parts, plan));
+    let build = || {
+        let cell = Cell::build(plan, node, parts.beds, tell)?;
+        going_on(tell(Stage::StaticLoad, 0.0))?;
+        Ok((cell.store(), cell.pressed(node.gravity)?))
+    };
+    // later results must not depend on whether the cell was built before: both cases continue from the stored state
+    let (stored, stiffness) = parts.beds.built::<_, NodeError>(&hash, build)?;
+    Ok((Cell::restore(stored, plan.sleepers.len())?, Book::new(stiffness)))
 }
 
 fn no_forces() -> NodeError {

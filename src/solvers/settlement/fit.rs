@@ -250,7 +250,7 @@ mod tests {
         let law = Law { form, cycle_per: CyclePer::Axle };
         let settled = |count: &u64| {
             let mut state = law.fresh();
-            state.load(&[Peak { force: 40e3, deflection: 1e-3 }], *count);
+            state.load(&[Peak { force: 40e3, deflection: 1e-3, void: 0.0 }], *count);
             state.settlement()
         };
         COUNTS.iter().map(settled).collect()

@@ -11,12 +11,13 @@
 //! Equal loads give the closed form again, and n cycles together are the same as n single cycles. For f = N^b this is a
 //! damage that adds up independent of the order: S^(1/b) grows by s^(1/b) per cycle.
 
+use super::law::Peak;
 use serde::{Deserialize, Serialize};
 
 /// A law S = s(F) f(N), with f increasing from f(0) = 0 and concave.
 pub(super) trait Growth {
     /// s(F); the product with f is in m.
-    fn amplitude(&self, force: f64) -> f64;
+    fn amplitude(&self, peak: Peak) -> f64;
     /// f(N).
     fn shape(&self, cycles: f64) -> f64;
     /// N at which f(N) is `shape`; infinite if f never reaches it.
@@ -32,9 +33,9 @@ pub(super) trait Growth {
 pub struct HardeningState {
     /// m.
     settlement: f64,
-    /// The last load, N, and the number of its cycles that would have caused the same settlement: equal loads stay on
-    /// the closed form.
-    force: f64,
+    /// s(F) of the last load, and the number of its cycles that would have caused the same settlement: equal loads stay
+    /// on the closed form.
+    amplitude: f64,
     equivalent: f64,
     /// Number of cycles carried so far.
     carried: u64,
@@ -50,35 +51,36 @@ impl HardeningState {
         self.settlement
     }
 
-    /// Applies `trains` trains; `forces` (N) are the cycles of one train.
-    pub(super) fn load(&mut self, law: &dyn Growth, forces: &[f64], trains: u64) {
-        let Some(first) = forces.first() else { return };
-        if forces.iter().all(|force| force == first) {
-            self.advance(law, *first, trains * forces.len() as u64);
+    /// Applies `trains` trains; `cycles` are the peaks of the cycles of one train.
+    pub(super) fn load(&mut self, law: &dyn Growth, cycles: &[Peak], trains: u64) {
+        let amplitudes: Vec<f64> = cycles.iter().map(|peak| law.amplitude(*peak)).collect();
+        let Some(first) = amplitudes.first() else { return };
+        if amplitudes.iter().all(|amplitude| amplitude == first) {
+            self.advance(law, *first, trains * amplitudes.len() as u64);
             return;
         }
         let mut left = trains;
         while left > 0 {
-            let group = if law.order_is_free() { left } else { self.carried / (GROUP * forces.len() as u64) };
+            let group = if law.order_is_free() { left } else { self.carried / (GROUP * amplitudes.len() as u64) };
             let group = group.clamp(1, left);
-            forces.iter().for_each(|force| self.advance(law, *force, group));
+            amplitudes.iter().for_each(|amplitude| self.advance(law, *amplitude, group));
             left -= group;
         }
     }
 
-    fn advance(&mut self, law: &dyn Growth, force: f64, count: u64) {
+    fn advance(&mut self, law: &dyn Growth, amplitude: f64, count: u64) {
         self.carried += count;
-        let amplitude = law.amplitude(force);
         if amplitude.is_nan() || amplitude <= 0.0 {
             return;
         }
-        let before = if force == self.force { self.equivalent } else { law.cycles(self.settlement / amplitude) };
+        let before =
+            if amplitude == self.amplitude { self.equivalent } else { law.cycles(self.settlement / amplitude) };
         let after = before + count as f64;
         // a load this small adds nothing to the settlement by larger loads
         if !after.is_finite() {
             return;
         }
-        (self.force, self.equivalent) = (force, after);
+        (self.amplitude, self.equivalent) = (amplitude, after);
         self.settlement = self.settlement.max(amplitude * law.shape(after));
     }
 }

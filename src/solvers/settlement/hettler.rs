@@ -4,6 +4,7 @@
 //! C: the base is a parameter. Between 0 and 1 cycles the law is not defined; settlement is assumed to grow linearly.
 
 use super::hardening::Growth;
+use super::law::Peak;
 use serde::{Deserialize, Serialize};
 
 /// The parameters of the law.
@@ -45,8 +46,8 @@ impl Hettler {
 }
 
 impl Growth for Hettler {
-    fn amplitude(&self, force: f64) -> f64 {
-        self.s * (force / self.reference_force).powf(self.exponent)
+    fn amplitude(&self, peak: Peak) -> f64 {
+        self.s * (peak.force / self.reference_force).powf(self.exponent)
     }
 
     fn shape(&self, cycles: f64) -> f64 {

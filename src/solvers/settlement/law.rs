@@ -16,31 +16,42 @@ pub struct Peak {
     pub force: f64,
     /// Largest displacement of the support under the sleeper below its unloaded level, m.
     pub deflection: f64,
+    /// Gap between the sleeper and its support before the wheel came, m.
+    pub void: f64,
 }
 
 impl Peak {
-    /// The larger force and the larger deflection of both.
+    /// The larger force, the larger deflection and the larger void of both.
     pub fn max(self, other: Peak) -> Peak {
-        Peak { force: self.force.max(other.force), deflection: self.deflection.max(other.deflection) }
+        Peak {
+            force: self.force.max(other.force),
+            deflection: self.deflection.max(other.deflection),
+            void: self.void.max(other.void),
+        }
     }
 
     /// A peak between this one (0) and another one (1).
     pub fn towards(self, end: Peak, share: f64) -> Peak {
         let between = |a: f64, b: f64| a + share * (b - a);
-        Peak { force: between(self.force, end.force), deflection: between(self.deflection, end.deflection) }
+        Peak {
+            force: between(self.force, end.force),
+            deflection: between(self.deflection, end.deflection),
+            void: between(self.void, end.void),
+        }
     }
 
-    /// The same peak with the change of another one added, never below 0.
+    /// The same peak with the change of the force and deflection of another one added, never below 0.
     pub fn followed(self, from: Peak, to: Peak) -> Peak {
         Peak {
             force: (self.force + (to.force - from.force)).max(0.0),
             deflection: (self.deflection + (to.deflection - from.deflection)).max(0.0),
+            void: self.void,
         }
     }
 
     /// The same peak multiplied by a factor, for a linear support.
     pub fn scaled(self, factor: f64) -> Peak {
-        Peak { force: self.force * factor, deflection: self.deflection * factor }
+        Peak { force: self.force * factor, deflection: self.deflection * factor, ..self }
     }
 }
 
@@ -161,7 +172,13 @@ impl Form {
                 ("reference_deflection", &mut l.reference_deflection),
             ],
             Form::Power(l) => {
-                vec![("a", &mut l.a), ("m", &mut l.m), ("b", &mut l.b), ("reference_force", &mut l.reference_force)]
+                vec![
+                    ("a", &mut l.a),
+                    ("m", &mut l.m),
+                    ("b", &mut l.b),
+                    ("reference_force", &mut l.reference_force),
+                    ("g", &mut l.g),
+                ]
             }
         }
     }

@@ -4,6 +4,7 @@
 //! The published form does not depend on the force. `exponent` adds a factor (F/F₀)^m; with 0 it is the published form.
 
 use super::hardening::{Growth, invert};
+use super::law::Peak;
 use serde::{Deserialize, Serialize};
 
 /// The parameters of the law.
@@ -29,8 +30,8 @@ impl Default for Sato {
 }
 
 impl Growth for Sato {
-    fn amplitude(&self, force: f64) -> f64 {
-        (force / self.reference_force).powf(self.exponent)
+    fn amplitude(&self, peak: Peak) -> f64 {
+        (peak.force / self.reference_force).powf(self.exponent)
     }
 
     fn shape(&self, cycles: f64) -> f64 {

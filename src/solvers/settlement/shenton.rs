@@ -5,6 +5,7 @@
 //! K_s mm. Strain hardening of its first term is Shenton's own rule for mixed axles: their fifth powers add up.
 
 use super::hardening::{Growth, invert};
+use super::law::Peak;
 use serde::{Deserialize, Serialize};
 
 /// The parameters of the law.
@@ -30,8 +31,8 @@ impl Default for Shenton {
 }
 
 impl Growth for Shenton {
-    fn amplitude(&self, force: f64) -> f64 {
-        (force / self.reference_force).powf(self.exponent)
+    fn amplitude(&self, peak: Peak) -> f64 {
+        (peak.force / self.reference_force).powf(self.exponent)
     }
 
     fn shape(&self, cycles: f64) -> f64 {

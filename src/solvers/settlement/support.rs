@@ -66,10 +66,10 @@ impl SupportState {
             Memory::Guerin(law, settlement) => {
                 *settlement += cycles.map(|peak| law.of_cycle(peak.deflection)).sum::<f64>() * trains as f64;
             }
-            Memory::Sato(law, state) => state.load(law, &forces.collect::<Vec<f64>>(), trains),
-            Memory::Shenton(law, state) => state.load(law, &forces.collect::<Vec<f64>>(), trains),
-            Memory::Hettler(law, state) => state.load(law, &forces.collect::<Vec<f64>>(), trains),
-            Memory::Power(law, state) => state.load(law, &forces.collect::<Vec<f64>>(), trains),
+            Memory::Sato(law, state) => state.load(law, &cycles.collect::<Vec<Peak>>(), trains),
+            Memory::Shenton(law, state) => state.load(law, &cycles.collect::<Vec<Peak>>(), trains),
+            Memory::Hettler(law, state) => state.load(law, &cycles.collect::<Vec<Peak>>(), trains),
+            Memory::Power(law, state) => state.load(law, &cycles.collect::<Vec<Peak>>(), trains),
         }
     }
 
