@@ -25,7 +25,7 @@ fn said(output: &Output) -> String {
 
 fn settled(dir: &Path, run: &str) -> f64 {
     let summary: Value = serde_json::from_slice(&std::fs::read(dir.join(run).join("summary.json")).unwrap()).unwrap();
-    summary["scalars"]["far_field_settlement"]["value"].as_f64().unwrap_or_else(|| panic!("{summary:#}"))
+    summary["far_field_settlement"]["value"].as_f64().unwrap_or_else(|| panic!("{summary:#}"))
 }
 
 /// The scene by the law of its own grains.

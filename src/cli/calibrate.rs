@@ -1,17 +1,17 @@
 //! `trackbed calibrate`: the parameters with which the law of a scene comes nearest to a measured settlement curve, or
 //! a law for the grains of the scene.
 
-use super::scene::{SceneArguments, failed, not_yet, show};
+use super::scene::{SceneArguments, failed, file_name, not_yet, show};
 use super::{Format, Outcome, calibrate_grains, terminal};
 use crate::check::{self, MeasuredCurve, measured_curve};
 use crate::compile::Compiled;
 use crate::diag::{Code, Diagnostic, FileId, Span, nearest::nearest, or_list};
 use crate::execute::passage_as_built;
 use crate::lower::supports;
-use crate::scenario::{Scenario, Seat, SettlementLaw, law_argument};
+use crate::scenario::{Scenario, Seat, SettlementLaw, law_argument, law_form};
 use crate::schema;
 use crate::solvers::settlement::fit::{Fit, FitError};
-use crate::solvers::settlement::{self, Form, Law, Logarithm, Measured, Peak, Wanted};
+use crate::solvers::settlement::{self, Law, Measured, Peak, Wanted};
 use crate::units::{Dimension, number, parse_unit};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -240,24 +240,6 @@ fn refused(error: &FitError, law: &SettlementLaw, wanted: &[Wanted], measured: &
     }
 }
 
-/// A form with its arguments in the notation of the language.
-pub(super) fn form_as_text(mut form: Form) -> String {
-    let name = form.name();
-    let arguments = form.parameters().into_iter();
-    let mut values: Vec<String> =
-        arguments.map(|(argument, value)| format!("{argument} = {}", law_argument(name, argument, *value))).collect();
-    if let Form::Hettler(hettler) = form {
-        let word = if hettler.logarithm == Logarithm::Decimal { "decimal" } else { "natural" };
-        values.push(format!("logarithm = {word}"));
-    }
-    format!("{name}({})", values.join(", "))
-}
-
-/// The name of a file without its folder, for a text of the language.
-pub(super) fn file_name(path: &Path) -> String {
-    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().replace(['"', '\\'], "'"))
-}
-
 fn tenths(value: f64) -> String {
     number((value * 10.0).round() / 10.0)
 }
@@ -324,7 +306,7 @@ impl Calibration<'_> {
             "law {}_fitted {{\n  form      = {}\n  cycle_per = {}\n{loads}  cycles    = {} .. {} axles\n  \
              source    = \"{} fitted to {} by trackbed calibrate, rms error {} mm\"\n  evidence  = derived\n}}\n",
             self.law.name,
-            form_as_text(law.form),
+            law_form(law.form),
             law.cycle_per.name(),
             first.copied().unwrap_or(0),
             last.copied().unwrap_or(0),

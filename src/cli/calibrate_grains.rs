@@ -1,8 +1,7 @@
 //! `trackbed calibrate --grains`: a settlement law for the grains of a scene, from specimens of its cells.
 
 use super::bench::length;
-use super::calibrate::{file_name, form_as_text};
-use super::scene::{SceneArguments, failed, not_yet, show};
+use super::scene::{SceneArguments, failed, file_name, not_yet, show};
 use super::terminal::aligned;
 use super::{Format, Outcome, interrupt, pack, progress, terminal};
 use crate::check::Override;
@@ -11,6 +10,7 @@ use crate::diag::{Code, Diagnostic, and_list};
 use crate::execute::{self, RunError};
 use crate::graph::{Clock, Graph};
 use crate::nodes::{Builders, NodeError};
+use crate::scenario::{law_argument, law_form};
 use crate::solvers::settlement::Form;
 use crate::solvers::settlement::fit::FitError;
 use crate::trials::specimens::{Bench, Curve, Ranges, Surrogate, fit_curves, kinds_of_cells};
@@ -233,7 +233,7 @@ impl Found {
         let names: Vec<(&str, f64)> = form.parameters().into_iter().map(|(name, value)| (name, *value)).collect();
         for (name, error) in FITTED.into_iter().zip(standard_errors) {
             let value = names.iter().find(|(other, _)| *other == name).map_or(0.0, |(_, value)| *value);
-            let shown = |value: f64| crate::scenario::law_argument("power", name, value);
+            let shown = |value: f64| law_argument("power", name, value);
             let error = error.map_or("on its bound".to_owned(), |error| format!("standard error {}", shown(error)));
             out += &format!("  {name:<4}{:<20}{error}\n", shown(value));
         }
@@ -283,7 +283,7 @@ impl Found {
              of the grains of {file} by trackbed calibrate\"\n  evidence = derived\n}}\n",
             self.place,
             self.name,
-            form_as_text(Form::Power(surrogate.law)),
+            law_form(Form::Power(surrogate.law)),
             number(least.floor()),
             number(most.ceil()),
             surrogate.most_axles(),

@@ -58,6 +58,11 @@ impl PassArguments {
     }
 }
 
+/// The name of a file without its folder, for a text of the language.
+pub(super) fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().replace(['"', '\\'], "'"))
+}
+
 impl SceneArguments {
     /// The same with another seed.
     pub fn with_seed(&self, argument: &SeedArgument) -> SceneArguments {

@@ -2,7 +2,7 @@
 
 use super::Origin;
 use crate::schema;
-use crate::solvers::settlement::Law;
+use crate::solvers::settlement::{Form, Law, Logarithm};
 use crate::units::{number, parse_unit};
 use serde::{Deserialize, Serialize};
 
@@ -33,4 +33,17 @@ pub fn law_argument(form: &str, argument: &str, value: f64) -> String {
     let unit = if measure.unit.is_empty() { String::new() } else { format!(" {}", measure.unit) };
     let basis = measure.basis.map_or(String::new(), |b| format!(" per {}", b.names[0].0));
     format!("{}{unit}{basis}", number(value / size))
+}
+
+/// A form with its arguments in the notation of the language.
+pub fn law_form(mut form: Form) -> String {
+    let name = form.name();
+    let arguments = form.parameters().into_iter();
+    let mut values: Vec<String> =
+        arguments.map(|(argument, value)| format!("{argument} = {}", law_argument(name, argument, *value))).collect();
+    if let Form::Hettler(hettler) = form {
+        let word = if hettler.logarithm == Logarithm::Decimal { "decimal" } else { "natural" };
+        values.push(format!("logarithm = {word}"));
+    }
+    format!("{name}({})", values.join(", "))
 }

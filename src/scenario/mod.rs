@@ -22,7 +22,7 @@ pub use crate::solvers::track::{Integrator, Order, Sequence, Share, Spring};
 pub use bed::{Base, Bed, BedEnds, Grains, Tier, Volume, VolumeRecord};
 pub use given::{Given, Origin};
 pub use grading::{Grading, Passing};
-pub use law::{SettlementLaw, law_argument};
+pub use law::{SettlementLaw, law_argument, law_form};
 pub use library::{Evidence, LibraryEntry};
 pub use material::{Bond, Contact, Granular, Layer, Material, Packing, Shape, Soil, Strength, Surface, Surfaces};
 pub use profile::{Cubic, Curve, Piece, Profile, Varying};

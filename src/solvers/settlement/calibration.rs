@@ -1,7 +1,8 @@
 //! Fits a law to a settlement curve that was measured under known trains.
 
 use super::fit::{Fit, FitError, Parameter, fit};
-use super::law::{Form, Law, Peak};
+use super::law::{Form, Law};
+use super::peak::Peak;
 
 /// A parameter of a law to be fitted, between bounds, SI.
 #[derive(Debug, Clone, PartialEq)]

@@ -11,7 +11,7 @@
 //! Equal loads give the closed form again, and n cycles together are the same as n single cycles. For f = N^b this is a
 //! damage that adds up independent of the order: S^(1/b) grows by s^(1/b) per cycle.
 
-use super::law::Peak;
+use super::peak::Peak;
 use serde::{Deserialize, Serialize};
 
 /// A law S = s(F) f(N), with f increasing from f(0) = 0 and concave.

@@ -4,7 +4,7 @@
 //! C: the base is a parameter. Between 0 and 1 cycles the law is not defined; settlement is assumed to grow linearly.
 
 use super::hardening::Growth;
-use super::law::Peak;
+use super::peak::Peak;
 use serde::{Deserialize, Serialize};
 
 /// The parameters of the law.

@@ -3,7 +3,7 @@
 //! Under varying load S^(1/b) adds up (see `hardening`): the order of the cycles has no effect.
 
 use super::hardening::Growth;
-use super::law::Peak;
+use super::peak::Peak;
 use serde::{Deserialize, Serialize};
 
 /// The parameters of the law.

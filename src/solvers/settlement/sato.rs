@@ -4,7 +4,7 @@
 //! The published form does not depend on the force. `exponent` adds a factor (F/F₀)^m; with 0 it is the published form.
 
 use super::hardening::{Growth, invert};
-use super::law::Peak;
+use super::peak::Peak;
 use serde::{Deserialize, Serialize};
 
 /// The parameters of the law.

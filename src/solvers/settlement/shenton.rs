@@ -5,7 +5,7 @@
 //! K_s mm. Strain hardening of its first term is Shenton's own rule for mixed axles: their fifth powers add up.
 
 use super::hardening::{Growth, invert};
-use super::law::Peak;
+use super::peak::Peak;
 use serde::{Deserialize, Serialize};
 
 /// The parameters of the law.

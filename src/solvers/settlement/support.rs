@@ -6,8 +6,9 @@
 use super::guerin::Guerin;
 use super::hardening::HardeningState;
 use super::hettler::Hettler;
-use super::law::{CyclePer, Form, Law, Peak};
+use super::law::{CyclePer, Form, Law};
 use super::nasrollahi::Nasrollahi;
+use super::peak::Peak;
 use super::power::Power;
 use super::sato::Sato;
 use super::shenton::Shenton;

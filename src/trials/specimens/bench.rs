@@ -132,8 +132,8 @@ impl<'a> Bench<'a> {
         Ok(found)
     }
 
-    /// The seat whose forces load the specimens of a cell: one of its kind that every wheel passes, as near to its own seat
-    /// as possible.
+    /// The seat whose forces load the specimens of a cell: one of its kind that every wheel passes, as near to its own
+    /// seat as possible.
     pub fn seat(&self, cell: usize) -> Result<usize, NodeError> {
         let node = self.parts.cells;
         let own = &node.cells[cell];

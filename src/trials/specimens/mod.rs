@@ -1,7 +1,7 @@
 //! A settlement law fitted to the grains of a scene: specimens of its cells under trains of several loads and voids.
 //!
-//! A specimen is one cell of tier `cells`. Trains of the scene pass it, with their forces multiplied by a factor or with
-//! a void under the sleeper ([`Ranges`]). The law [`Power`](crate::solvers::settlement::Power) is fitted to the
+//! A specimen is one cell of tier `cells`. Trains of the scene pass it, with their forces multiplied by a factor or
+//! with a void under the sleeper ([`Ranges`]). The law [`Power`](crate::solvers::settlement::Power) is fitted to the
 //! settlement of all specimens; each specimen left out in turn, the later trains, and a specimen whose loads change
 //! tell its error ([`Surrogate`]).
 

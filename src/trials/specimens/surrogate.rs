@@ -9,13 +9,14 @@ use crate::solvers::settlement::{CyclePer, Form, Law, Peak, Power};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surrogate {
     pub law: Power,
-    /// Of the parameters a, m, b and g; `None` for a parameter on a bound.
+    /// Standard errors of the parameters a, m, b and g; `None` for a parameter on a bound.
     pub standard_errors: Vec<Option<f64>>,
     /// Root of the mean square of the residuals.
     pub rms: f64,
     /// Each specimen by a law that was fitted to the others.
     pub left_out: Vec<LeftOut>,
-    /// The last train of each specimen by a law that was fitted to the first half of the trains: root of the mean square.
+    /// The last train of each specimen by a law that was fitted to the first half of the trains: root of the mean
+    /// square.
     pub later: f64,
     /// The specimen whose loads change: the largest error after any train.
     pub check: f64,
