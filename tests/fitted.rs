@@ -86,6 +86,7 @@ fn what_cannot_be_fitted_says_why() {
         (vec!["scene.track", "--voids", "3 kN"], "expected a length"),
         (vec!["scene.track", "--out", "scene.track"], "the scene itself"),
         (vec!["scene.track", "--fit", "a"], "cannot be used with"),
+        (vec!["scene.track", "--out", "none/x.track"], "there is no folder `none`"),
     ] {
         let mut all = vec!["calibrate"];
         all.extend(&arguments);

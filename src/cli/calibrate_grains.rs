@@ -28,16 +28,16 @@ pub(super) struct GrainArguments {
     #[arg(long, conflicts_with = "measured")]
     grains: bool,
     /// Least and largest factor of the forces that a train of the scene adds.
-    #[arg(long, value_name = "A..B", default_value = "0.5..1.8", value_parser = factors, requires = "grains")]
+    #[arg(long, value_name = "A..B", default_value = "0.5..1.8", value_parser = factors, conflicts_with = "measured")]
     loads: [f64; 2],
     /// Largest void under a sleeper.
-    #[arg(long, value_name = "LENGTH", default_value = "0.5 mm", value_parser = length, requires = "grains")]
+    #[arg(long, value_name = "LENGTH", default_value = "0.5 mm", value_parser = length, conflicts_with = "measured")]
     voids: f64,
     /// Trains that pass each specimen.
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(6..=10_000), requires = "grains")]
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(6..=10_000), conflicts_with = "measured")]
     trains: u32,
     /// Write the laws to this file, which a scene uses with `use`.
-    #[arg(long, value_name = "FILE", requires = "grains")]
+    #[arg(long, value_name = "FILE", conflicts_with = "measured")]
     out: Option<PathBuf>,
     /// Where packed beds and measured specimens are kept, by what made them.
     #[arg(long, value_name = "DIR", env = "TRACKBED_CACHE")]

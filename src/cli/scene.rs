@@ -73,14 +73,18 @@ impl SceneArguments {
     /// Writes an answer to a file, which must not be the scene; or says why not.
     pub fn write_beside(&self, out: &Path, bytes: &[u8]) -> Result<(), String> {
         self.is_beside(out)?;
-        write_atomically(out, bytes).map_err(|error| format!("cannot write `{}`: {error}", out.display()))
+        write_atomically(out, bytes).map_err(|error| error.to_string())
     }
 
-    /// Fails if a file is the scene.
+    /// Fails if a file is the scene, or its folder does not exist.
     pub fn is_beside(&self, out: &Path) -> Result<(), String> {
         let is_scene = self.file.canonicalize().is_ok_and(|scene| out.canonicalize().is_ok_and(|out| out == scene));
         if is_scene {
             return Err(format!("`{}` is the scene itself; name another file after `--out`", out.display()));
+        }
+        let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+            return Err(format!("cannot write `{}`: there is no folder `{}`", out.display(), folder.display()));
         }
         Ok(())
     }

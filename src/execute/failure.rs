@@ -56,8 +56,8 @@ fn of_law(clock: Clock, seat: usize, cause: &NodeError, graph: &Graph, origins: 
     let scene = Scene { graph, origins };
     let x = graph.track().and_then(|track| track.seats.get(seat)).map_or(0.0, |seat| seat.x);
     let said = Diagnostic::new(Code::E0817, format!("after {clock}: {cause}")).help(
-        "fit the law over a larger range with `trackbed calibrate --grains` (`--loads`, `--voids`), or remove its `error` to use it as \
-         an extrapolation",
+        "fit the law over a larger range with `trackbed calibrate --grains` (`--loads`, `--voids`), or remove its \
+         `error` to use it as an extrapolation",
     );
     let (span, text) = scene.place(x);
     span.map_or(said.clone(), |span| said.label(span, text))
