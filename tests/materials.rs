@@ -6,7 +6,9 @@ use std::path::Path;
 use std::process::Command;
 use trackbed::check::{Modules, NoModules, Override};
 use trackbed::diag::{Code, Severity};
-use trackbed::scenario::{BedEnds, Contact, Force, Loading, Scenario, Seat, Shape, Strength, Surfaces, Tier, Volume};
+use trackbed::scenario::{
+    BedEnds, Contact, Force, Loading, Repeats, Scenario, Seat, Shape, Strength, Surfaces, Tier, Volume,
+};
 use trackbed::{Compiled, compile};
 
 fn shipped(name: &str, overrides: &[&str]) -> Compiled {
@@ -77,7 +79,10 @@ fn the_papers_scene_is_checked_with_all_its_grains() {
     assert_eq!(scenario.track.bed.half_width.map(|w| *w), Some(1.2));
     assert_eq!(scenario.track.bed.ends, BedEnds::Walls);
     let grains = &scenario.solve.grains;
-    assert_eq!((*grains.tier, grains.window.clone(), grains.repeats), (Tier::Full, Some(vec![[-24.0, 6.0]]), 1));
+    assert_eq!(
+        (*grains.tier, grains.window.clone(), grains.repeats),
+        (Tier::Full, Some(vec![[-24.0, 6.0]]), Repeats::ONCE)
+    );
     let [volume] = scenario.volumes.as_slice() else { panic!("one record of ballast") };
     assert_eq!((volume.seats.len(), volume.depth, volume.after.as_slice()), (2, Some(0.2), &[100, 500][..]));
     assert_eq!(volume.volume, Volume::Box { along: 0.2, across: Some(1.2), height: 0.2 });

@@ -56,6 +56,7 @@ pub const ALWAYS_READ: &[&str] = &[
     "study.sampling",
     "study.set",
     "study.repeats",
+    "study.tolerance",
     "study.budget",
     "study.minimise",
     "study.maximise",

@@ -217,7 +217,7 @@ fn run_one(asked: &Asked<'_>, subject: &RunSubject<'_>, planned: &Planned) -> Re
     let directory = directory.map_err(|error| running.stop(stored::diagnostic(&error)))?;
     if directory.finished().is_none() {
         terminal::note(&format!("{}: about {}\n", variant.name, duration(planned.expected_seconds())));
-        match running::compute(directory, &running) {
+        match running::compute(directory, &running, &|_, _| Ok(Vec::new())) {
             Ok(_) => {}
             Err(outcome) if interrupt::asked().load(std::sync::atomic::Ordering::Relaxed) => return Err(outcome),
             Err(_) => return Ok(None),

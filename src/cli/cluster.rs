@@ -109,7 +109,7 @@ impl Elsewhere<'_> {
         let slurm = Slurm { partitions, largest_array: Slurm::array_limit(), ..self.slurm(&logs) };
         let mut watch = Watch::new(work, &slurm, ledger(state)?);
         watch.submit()?;
-        let (asked, mut shown) = (interrupt::asked(), Shown::new(work.needs().len()));
+        let (asked, mut shown) = (interrupt::asked(), Shown::new(work.missing()?.len()));
         let mut pause = PAUSES[0];
         loop {
             let seen = watch.look()?;
@@ -227,7 +227,7 @@ impl Shown {
     /// Shows what was seen; whether it is something new.
     fn show(&mut self, seen: &Seen) -> bool {
         let is_new = self.last.as_ref() != Some(seen);
-        self.bar.show((self.all - seen.missing) as u64, self.all as u64);
+        self.bar.show(self.all.saturating_sub(seen.missing) as u64, self.all as u64);
         if let Some((_, ending)) = seen.again.first() {
             terminal::note(&format!(
                 "given again: {}, the task {}\n",

@@ -29,7 +29,8 @@ impl MemoryArgument {
 
     /// Why a study is not started that does so many runs at a time; `None` where they fit.
     pub fn refusal_of_study(self, plan: &Plan, jobs: usize) -> Option<Diagnostic> {
-        let (jobs, fewer) = (jobs.min(plan.runs()), format!("run fewer points at a time with `--jobs`; {LESS_MEMORY}"));
+        let (jobs, fewer) =
+            (jobs.min(plan.runs()[0]), format!("run fewer points at a time with `--jobs`; {LESS_MEMORY}"));
         match jobs {
             0 | 1 => self.refused("a point of the study needs", plan.bytes(1), LESS_MEMORY),
             _ => self.refused(&format!("{jobs} points at a time need"), plan.bytes(jobs), &fewer),

@@ -3,6 +3,7 @@
 
 use crate::graph::Graph;
 use crate::results::{self, BedTest, BedTestsView, ResultsError};
+use crate::scenario::Grains;
 use crate::store::{Directory, Finished, StoreError, Unfinished, Work};
 use std::path::PathBuf;
 
@@ -46,6 +47,20 @@ impl Parts {
             parts.starts += timing("parts") as u64;
         }
         Ok(Some(parts).filter(|parts| !parts.views.is_empty()))
+    }
+
+    /// The first parts that suffice for an open range of repeats; otherwise all.
+    pub fn sufficient(mut self, grains: &Grains) -> Parts {
+        let tests = |views: &[BedTestsView]| {
+            let mut all = views[0].tests.clone();
+            all.tests = views.iter().flat_map(|view| view.tests.tests.clone()).collect();
+            all
+        };
+        let is_enough = |count: &usize| grains.repeats.are_open() && tests(&self.views[..*count]).are_enough(grains);
+        if let Some(count) = (1..self.views.len()).find(is_enough) {
+            self.views.truncate(count);
+        }
+        self
     }
 
     /// The test of every packing.

@@ -6,7 +6,7 @@ use super::running::{self, Request, Running};
 use super::scene::{PassArguments, SceneArguments, SeedArgument, failed, not_yet, show};
 use super::{Outcome, report, run_elsewhere, run_packings, stored, terminal};
 use crate::diag::{Code, Diagnostic};
-use crate::results::{self, Verdict};
+use crate::results::{self, Run, Verdict};
 use crate::store::{Directory, Finished, Mode, StoreError, Unfinished};
 use crate::units::number;
 use std::path::{Path, PathBuf};
@@ -98,7 +98,7 @@ fn run_here(arguments: &Arguments) -> Outcome {
         },
     };
     let ready = match arguments.cluster.executor {
-        Place::Local => run_packings::compute_separate(&directory, &running).map(|()| directory),
+        Place::Local => run_packings::begin(&directory, &running).map(|()| directory),
         Place::Slurm | Place::Workers => computed_elsewhere(arguments, directory, &running),
     };
     finished(ready, &running)
@@ -106,7 +106,8 @@ fn run_here(arguments: &Arguments) -> Outcome {
 
 /// Computes what is left of a run, and gives the verdict on its expectations.
 fn finished(ready: Result<Directory, Outcome>, running: &Running<'_>) -> Outcome {
-    let run = ready.and_then(|directory| running::compute(directory, running));
+    let further = |directory: &Directory, run: &Run| run_packings::further(directory, running, run);
+    let run = ready.and_then(|directory| running::compute(directory, running, &further));
     run.map_or_else(|outcome| outcome, |run| verdicts(&run.summary.expectations, running))
 }
 

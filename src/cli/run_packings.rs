@@ -13,14 +13,15 @@ use crate::cluster::Need;
 use crate::diag::{Code, Diagnostic};
 use crate::execute::{self, Both};
 use crate::graph::Graph;
-use crate::results::{self, RunRecorder};
-use crate::scenario::Scenario;
+use crate::results::{self, Mean, Packing, Run, RunRecorder};
+use crate::scenario::{Grains, Scenario};
 use crate::store::{Directory, Mode, StoreError, Unfinished};
+use crate::units::number;
 use std::sync::atomic::Ordering;
 
 /// Number of packings that are computed each on its own.
 fn separate(graph: &Graph, scenario: &Scenario) -> u32 {
-    let under_track = graph.has_grains_under_track().then_some(scenario.solve.grains.repeats);
+    let under_track = graph.has_grains_under_track().then_some(scenario.solve.grains.repeats.most);
     under_track.or(graph.tested_packings()).unwrap_or(1)
 }
 
@@ -50,33 +51,64 @@ pub(super) fn pieces(run: &Unfinished, running: &Running<'_>) -> Result<Vec<Piec
     std::iter::once(Ok(Piece::Itself)).chain(further).collect()
 }
 
-/// Computes, in this process, every packing that has a directory of its own.
-pub(super) fn compute_separate(directory: &Directory, running: &Running<'_>) -> Result<(), Outcome> {
-    let parts = Parts::directories(directory.shared(), running.graph);
-    let parts = parts.map_err(|error| running.stop(stored::diagnostic(&error)))?;
-    if running.graph.tested_packings().is_some() {
-        return (0..parts.len() as u32).try_for_each(|place| {
-            tell(place + 1, parts.len() as u32, running.scenario.solve.seed + u64::from(place));
-            part(directory.shared(), place, running)
-        });
+/// Begins a run in this process. Packings of a rig that processes shared before are computed here.
+pub(super) fn begin(directory: &Directory, running: &Running<'_>) -> Result<(), Outcome> {
+    let of_store = |error: StoreError| running.stop(stored::diagnostic(&error));
+    let parts = Parts::directories(directory.shared(), running.graph).map_err(of_store)?;
+    for place in 0..parts.len() as u32 {
+        tell(place, running, "");
+        part(directory.shared(), place, running)?;
     }
-    let seeds: Vec<u64> = further_seeds(running).collect();
-    let all = seeds.len() as u32 + 1;
-    if all > 1 {
-        run_elsewhere::begin(directory).map_err(|error| running.stop(stored::diagnostic(&error)))?;
-    }
-    for (number, seed) in (1..).zip(seeds) {
-        tell(number, all, seed);
-        further(running.request, seed)?;
-    }
-    if all > 1 {
-        tell(all, all, running.scenario.solve.seed);
+    if parts.is_empty() && further_seeds(running).next().is_some() {
+        // what is kept first may be a further packing
+        run_elsewhere::begin(directory).map_err(of_store)?;
+        tell(0, running, "");
     }
     Ok(())
 }
 
-fn tell(number: u32, all: u32, seed: u64) {
-    terminal::note(&format!("packing {number} of {all}: seed {seed}\n"));
+/// Computes the further packings of a track after the run itself, each unless it is finished: in an open range of
+/// repeats as many as the means need.
+pub(super) fn further(directory: &Directory, running: &Running<'_>, run: &Run) -> Result<Vec<Packing>, Outcome> {
+    let (own, solve) = (&run.summary.scalars, &running.scenario.solve);
+    let (repeats, grains) = (solve.grains.repeats, &solve.grains);
+    let mut found: Vec<Packing> = Vec::new();
+    for seed in further_seeds(running) {
+        let so_far = Mean::of(own, &found);
+        if repeats.are_open() && so_far.is_enough(grains) {
+            break;
+        }
+        let read = || results::read_packing(directory.path(), seed).map_err(|error| running.refuse(&error));
+        let is_open = repeats.are_open() && found.len() + 1 >= repeats.least as usize;
+        let why = if is_open { format!(", {}", said(&so_far, grains)) } else { String::new() };
+        tell((seed - solve.seed) as u32, running, &why);
+        another(running.request, seed)?;
+        found.extend(read()?);
+    }
+    let all = Mean::of(own, &found);
+    if repeats.are_open() && !found.is_empty() && !all.is_enough(grains) {
+        terminal::note(&format!("{repeats} packings are too few: {}\n", said(&all, grains)));
+    }
+    Ok(found)
+}
+
+/// `the largest settlement is 0.68 +- 0.15 mm, asked to within 0.03 mm as is the step at the structure`
+fn said(mean: &Mean, grains: &Grains) -> String {
+    let digits = |metres: f64| number(format!("{:.2e}", metres * 1e3).parse().unwrap_or(metres * 1e3));
+    let (settlement, half) = mean.settlement();
+    let half = half.map_or(String::new(), |half| format!(" +- {}", digits(half)));
+    format!(
+        "the largest settlement is {}{half} mm; it and the step at the structure are asked to within {} mm",
+        digits(settlement),
+        digits(settlement.abs() * *grains.tolerance)
+    )
+}
+
+/// Says which packing comes.
+fn tell(place: u32, running: &Running<'_>, why: &str) {
+    let solve = &running.scenario.solve;
+    let (number, seed) = (place + 1, solve.seed + u64::from(place));
+    terminal::note(&format!("packing {number} of {}: seed {seed}{why}\n", solve.grains.repeats));
 }
 
 /// Computes packings of a run that another process watches.
@@ -97,7 +129,7 @@ pub(super) fn compute_shared(run: &Unfinished, packings: &Packings) -> Result<()
         match place {
             place if graph.tested_packings().is_some() => part(run, *place, &running)?,
             0 => to_the_last_axle(&running)?,
-            further_place => further(&request, scenario.solve.seed + u64::from(*further_place))?,
+            further_place => another(&request, scenario.solve.seed + u64::from(*further_place))?,
         }
     }
     Ok(())
@@ -106,7 +138,7 @@ pub(super) fn compute_shared(run: &Unfinished, packings: &Packings) -> Result<()
 /// Seeds of the further packings of a track on grains.
 fn further_seeds(running: &Running<'_>) -> impl Iterator<Item = u64> {
     let solve = &running.scenario.solve;
-    let further = if running.graph.has_grains_under_track() { solve.grains.repeats - 1 } else { 0 };
+    let further = if running.graph.has_grains_under_track() { solve.grains.repeats.most - 1 } else { 0 };
     let seed = solve.seed;
     (1..=u64::from(further)).map(move |place| seed + place)
 }
@@ -119,7 +151,7 @@ fn part(run: &Unfinished, place: u32, running: &Running<'_>) -> Result<(), Outco
 }
 
 /// Runs the scene of a track on the packing of another seed, or goes on with it.
-fn further(request: &Request, seed: u64) -> Result<(), Outcome> {
+fn another(request: &Request, seed: u64) -> Result<(), Outcome> {
     let request = request.with_seed(seed);
     let compiled = request.compile().ok_or(Outcome::Usage)?;
     let (Some(scenario), Some(graph)) = (&compiled.scenario, compiled.runnable()) else {
@@ -138,7 +170,11 @@ fn further(request: &Request, seed: u64) -> Result<(), Outcome> {
         (false, _) => open(Mode::Resume),
     };
     let directory = directory.map_err(|error| running.stop(stored::diagnostic(&error)))?;
-    if directory.finished().is_some() { Ok(()) } else { running::compute(directory, &running).map(drop) }
+    if directory.finished().is_some() {
+        Ok(())
+    } else {
+        running::compute(directory, &running, &|_, _| Ok(Vec::new())).map(drop)
+    }
 }
 
 /// Computes a run up to its last axle, and keeps its state there.

@@ -12,7 +12,9 @@ use crate::diag::{Code, Diagnostic, Sources};
 use crate::execute::{self, Both, Ending, Event, Executor, Listener};
 use crate::graph::Graph;
 use crate::lower::Parameter;
-use crate::results::{self, BedTestsView, BlockRow, Label, NamedBytes, ResultsError, Run, RunRecorder, Scalar, Source};
+use crate::results::{
+    self, BedTestsView, BlockRow, Label, NamedBytes, Packing, ResultsError, Run, RunRecorder, Scalar, Source,
+};
 use crate::scenario::Scenario;
 use crate::store::{Beds, Directory, Work};
 use crate::units::number;
@@ -134,15 +136,18 @@ fn results_diagnostic(error: &ResultsError) -> Diagnostic {
     }
 }
 
+/// What gives the runs on further packings, after the run itself.
+pub(super) type Further<'f> = &'f dyn Fn(&Directory, &Run) -> Result<Vec<Packing>, Outcome>;
+
 /// Runs a scene into its directory, to its report.
-pub(super) fn compute(directory: Directory, running: &Running<'_>) -> Result<Run, Outcome> {
+pub(super) fn compute(directory: Directory, running: &Running<'_>, further: Further<'_>) -> Result<Run, Outcome> {
     let (out, refused) = (directory.path().to_owned(), |error: &ResultsError| running.refuse(error));
     let parts = Parts::read(directory.shared(), running.graph, &running.work).map_err(|error| refused(&error))?;
     let Computed { run, view, timed } = match parts {
         Some(parts) => joined(parts, running),
         None => execute(&directory, running.graph, running)?,
     };
-    let packings = results::read_packings(&out, &running.scenario.solve).map_err(|error| refused(&error))?;
+    let packings = further(&directory, &run)?;
     let run = run.with_packings(packings);
     let mut files = files(&run, view.as_ref(), &out).map_err(|error| refused(&error))?;
     files.extend(running.resolved.iter().map(|text| (results::RESOLVED.to_owned(), text.clone().into_bytes())));
@@ -206,9 +211,10 @@ fn execute(directory: &Directory, graph: &Graph, running: &Running<'_>) -> Resul
     Ok(Computed { run, view: view.map_err(unwritable)?.flatten(), timed })
 }
 
-/// The run of its parts.
+/// The run of its parts: in an open range of repeats of the first that suffice.
 fn joined(parts: Parts, running: &Running<'_>) -> Computed {
     let Running { scenario, graph, .. } = running;
+    let parts = parts.sufficient(&scenario.solve.grains);
     let timed = Timed { solve: parts.seconds, build: 0.0, parts: parts.starts, after: Instant::now() };
     let mut recorder = RunRecorder::new(scenario, graph);
     if let Some(tests) = &mut recorder.tables.tests {
@@ -341,10 +347,13 @@ fn headline(out: &mut String, scalars: &BTreeMap<String, Scalar>, lines: &[Label
         let Some(scalar) = scalars.get(*name) else { continue };
         let band = scalars.get(&format!("{name}_confidence"));
         let band = band.map_or(String::new(), |half| format!(" +- {}", rounded(half.value)));
-        let over = scalars.get(&format!("{name}_mean")).zip(scalars.get(&format!("{name}_deviation")));
-        let over = over.map_or(String::new(), |(mean, deviation)| {
-            format!(" (over packings {}, standard deviation {})", rounded(mean.value), rounded(deviation.value))
-        });
+        let over = |what: &str| scalars.get(&format!("{name}_{what}")).map(|scalar| rounded(scalar.value));
+        let over = match (over("mean"), over("mean_confidence"), over("deviation")) {
+            (Some(mean), Some(half), Some(deviation)) => {
+                format!(" (mean over packings {mean} +- {half}, standard deviation {deviation})")
+            }
+            _ => String::new(),
+        };
         out.push_str(&format!("  {text:<26}{}{band} {unit}{over}\n", rounded(scalar.value)));
     }
 }

@@ -17,7 +17,7 @@ use crate::nodes::turns;
 use crate::report;
 use crate::scenario::Study;
 use crate::store::Mode;
-use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Scene, StudyFolder};
+use crate::study::{self, Answer, Next, Plan, PlannedPoint, PointOutcome, Repeat, Scene, StudyFolder};
 use crate::units::duration;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -170,8 +170,8 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
             return Outcome::Failed;
         }
     };
-    let mut known = known_of(&plan, &folder);
-    let missing = known.iter().filter(|result| result.is_none()).count();
+    let mut next = study::next(&plan, &stored_of(&plan, &folder));
+    let missing = next.points();
     match (folder.is_finished(), missing) {
         (true, 0) => terminal::note("this study has been finished before: nothing is run\n"),
         (true, n) => terminal::note(&format!(
@@ -181,25 +181,28 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
         (false, _) => announce(&plan, jobs, arguments.cluster.executor),
     }
     let started = Instant::now();
-    if missing > 0 && !folder.is_finished() {
-        match elsewhere.perform(&folder, &asked) {
-            Ok(None) if arguments.cluster.executor == Executor::Local => {}
-            Ok(None) => known = known_of(&plan, &folder),
+    let is_elsewhere = arguments.cluster.executor != Executor::Local && !folder.is_finished();
+    while let (true, Next::Run(runs)) = (is_elsewhere, &next) {
+        match elsewhere.perform(&folder, &asked, runs) {
+            Ok(None) => next = study::next(&plan, &stored_of(&plan, &folder)),
             Ok(Some(outcome)) => return outcome,
             Err(error) => return refused(&error, compiled),
         }
     }
     let executor = execute::Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
-    let results = match perform(scene, &plan, known, &folder, &executor, jobs) {
-        Ok(results) => results,
-        Err(Unfinished::Broken(message)) => {
-            say(&[Diagnostic::new(Code::E0802, message).help("go on with `--resume`")], compiled);
-            return Outcome::Failed;
-        }
-        Err(Unfinished::Asked { kept }) => return stopped(&arguments.out, kept, plan.points.len()),
+    let runs = match next {
+        Next::Done(runs) => runs,
+        Next::Run(_) => match perform(scene, &plan, stored_of(&plan, &folder), &folder, &executor, jobs) {
+            Ok(runs) => runs,
+            Err(Unfinished::Broken(message)) => {
+                say(&[Diagnostic::new(Code::E0802, message).help("go on with `--resume`")], compiled);
+                return Outcome::Failed;
+            }
+            Err(Unfinished::Asked { kept }) => return stopped(&arguments.out, kept, plan.points.len()),
+        },
     };
     let title = compiled.scenario.as_ref().map_or("", |s| s.title.as_str());
-    let answer = Answer::new(title, &plan, results);
+    let answer = Answer::new(title, &plan, runs.iter().map(|runs| PointOutcome::of(runs)).collect());
     let name = arguments.scene.file.file_name().unwrap_or_default().to_string_lossy();
     let shown = answer.best().first().copied().or(answer.nearest());
     let best = shown.map(|index| scene.compile(&plan.points[index].overrides));
@@ -210,7 +213,7 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
     let timings = BTreeMap::from([("total_s".to_string(), seconds), ("jobs".to_string(), jobs as f64)]);
     let written = match (folder.is_finished(), missing) {
         (true, 0) => folder.show_again(&page),
-        _ => folder.finish(&plan, &answer, (&page, resolved.as_deref()), compiled, &timings),
+        _ => folder.finish(&plan, (&answer, &runs), (&page, resolved.as_deref()), compiled, &timings),
     };
     if let Err(error) = written {
         say(&[stored::diagnostic(&error)], compiled);
@@ -242,12 +245,20 @@ fn refused(error: &ClusterError, compiled: &Compiled) -> Outcome {
 
 /// What is about to run.
 fn announce(plan: &Plan, jobs: usize, executor: Executor) {
-    let runs = plan.runs();
     let left_out = match plan.left_out {
         0 => String::new(),
         n => format!(" ({n} of the design break a condition and are left out)"),
     };
-    let repeats = if plan.study.repeats > 1 { format!(", {runs} runs") } else { String::new() };
+    let ([least, most], [shortest, longest]) = (plan.runs(), plan.seconds());
+    let repeats = match plan.study.repeats.are_several() {
+        true if least < most => format!(", {least} to {most} runs"),
+        true => format!(", {most} runs"),
+        false => String::new(),
+    };
+    let about = match least < most {
+        true => format!("{} to {}", duration(shortest), duration(longest)),
+        false => format!("about {}", duration(longest)),
+    };
     let as_it_is = match plan.points.iter().find(|point| point.as_it_is).map(|point| point.number) {
         Some(0) => " and the scene as it is".to_string(),
         Some(number) => format!(", number {number} of them the scene as it is"),
@@ -255,19 +266,18 @@ fn announce(plan: &Plan, jobs: usize, executor: Executor) {
     };
     let how = if executor == Executor::Local { format!(", {jobs} at a time") } else { String::new() };
     terminal::note(&format!(
-        "study `{}`: {} points{left_out}{as_it_is}{repeats}, about {} of computing{how}\n",
+        "study `{}`: {} points{left_out}{as_it_is}{repeats}, {about} of computing{how}\n",
         plan.study.name,
         plan.designs(),
-        duration(plan.seconds())
     ));
 }
 
-/// What has run before, one for each point.
-fn known_of(plan: &Plan, folder: &StudyFolder) -> Vec<Option<PointResult>> {
+/// The stored runs, one list for each point.
+fn stored_of(plan: &Plan, folder: &StudyFolder) -> Vec<Vec<Repeat>> {
     let one = |point: &PlannedPoint| {
         let name = if point.number == 0 { "the scene as it is".to_string() } else { format!("point {}", point.number) };
         let damaged = |error| terminal::error(&format!("{name} runs again: {error}"));
-        folder.known(point).map_err(damaged).ok().flatten()
+        folder.runs(point).map_err(damaged).unwrap_or_default()
     };
     plan.points.iter().map(one).collect()
 }

@@ -18,11 +18,16 @@ pub(super) struct Study<'a> {
 }
 
 impl Study<'_> {
-    /// Has other processes compute the points: gives them to Slurm and waits for them, or writes them for workers.
-    /// Gives an outcome where the study ends here without its answer.
-    pub fn perform(&self, folder: &StudyFolder, asked: &Elsewhere<'_>) -> Result<Option<Outcome>, ClusterError> {
+    /// Has other processes compute these runs, by point and repeat: gives them to Slurm and waits for them, or writes
+    /// them for workers. Gives an outcome where the study ends here without its answer.
+    pub fn perform(
+        &self,
+        folder: &StudyFolder,
+        asked: &Elsewhere<'_>,
+        runs: &[(usize, u32)],
+    ) -> Result<Option<Outcome>, ClusterError> {
         let state = folder.directory().shared();
-        let pieces = Pieces { study: self, state, needs: self.needs() };
+        let pieces = Pieces { study: self, state, needs: self.all_needs(), wanted: runs };
         match asked.arguments.executor {
             Executor::Local => Ok(None),
             Executor::Slurm => asked.watch(&pieces, state),
@@ -30,10 +35,19 @@ impl Study<'_> {
         }
     }
 
-    /// What every run takes, in the order of [`Pieces`].
+    /// What the runs of the first round take.
     pub fn needs(&self) -> Vec<Need> {
+        self.needs_of(self.plan.study.repeats.least)
+    }
+
+    /// What every run takes that there may be, in the order of [`Pieces`].
+    fn all_needs(&self) -> Vec<Need> {
+        self.needs_of(self.plan.study.repeats.most)
+    }
+
+    fn needs_of(&self, repeats: u32) -> Vec<Need> {
         let of = |point: &PlannedPoint| Need { seconds: point.seconds, bytes: point.bytes, goes_on: false };
-        self.plan.points.iter().flat_map(|point| (0..self.plan.study.repeats).map(move |_| of(point))).collect()
+        self.plan.points.iter().flat_map(|point| (0..repeats).map(move |_| of(point))).collect()
     }
 }
 
@@ -42,12 +56,14 @@ struct Pieces<'a> {
     study: &'a Study<'a>,
     state: &'a Unfinished,
     needs: Vec<Need>,
+    /// Runs of this round, by point and repeat.
+    wanted: &'a [(usize, u32)],
 }
 
 impl Pieces<'_> {
     fn point(&self, piece: usize) -> (&PlannedPoint, u32) {
-        let repeats = self.study.plan.study.repeats;
-        (&self.study.plan.points[piece / repeats as usize], piece as u32 % repeats)
+        let most = self.study.plan.study.repeats.most;
+        (&self.study.plan.points[piece / most as usize], piece as u32 % most)
     }
 }
 
@@ -58,11 +74,13 @@ impl Work for Pieces<'_> {
 
     fn missing(&self) -> Result<BTreeSet<usize>, StoreError> {
         let kept = self.state.keys()?;
+        let most = self.study.plan.study.repeats.most as usize;
+        let wanted = self.wanted.iter().map(|(index, repeat)| index * most + *repeat as usize);
         let is_missing = |piece: &usize| {
             let (point, repeat) = self.point(*piece);
             !kept.contains(&point.key(repeat))
         };
-        Ok((0..self.needs.len()).filter(is_missing).collect())
+        Ok(wanted.filter(is_missing).collect())
     }
 
     fn put(&self, task: usize, pieces: &[usize]) -> Result<(), StoreError> {

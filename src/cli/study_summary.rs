@@ -23,6 +23,7 @@ pub(super) fn text(answer: &Answer, out: &Path, seconds: f64) -> String {
     if rows.len() < answer.rows.len() {
         let _ = writeln!(text, "  and {} more in study.csv", answer.rows.len() - rows.len());
     }
+    text += &packings(answer);
     text += &constraints(answer);
     text += &best(answer);
     let _ = writeln!(text, "{} ({} s)", out.join("study.html").display(), number((seconds * 10.0).round() / 10.0));
@@ -75,6 +76,7 @@ fn table(answer: &Answer, rows: &[usize]) -> Vec<Vec<String>> {
         }),
     );
     titles.extend((0..study.measured().len()).map(letter));
+    titles.extend(study.repeats.are_open().then(|| "packings".to_string()));
     titles.push(String::new());
     let best = answer.best();
     let row = |index: &usize| {
@@ -82,6 +84,7 @@ fn table(answer: &Answer, rows: &[usize]) -> Vec<Vec<String>> {
         let mut cells = vec![if row.as_it_is { "as it is".to_string() } else { row.number.to_string() }];
         cells.extend(row.levels.iter().map(|level| level.number.map_or_else(|| cut(&level.text), number)));
         cells.extend(study.measured().iter().enumerate().map(|(index, m)| value(answer, row, index, m)));
+        cells.extend(study.repeats.are_open().then(|| row.packings().to_string()));
         cells.push(remark(answer, row, best.contains(index)));
         cells
     };
@@ -92,7 +95,7 @@ fn table(answer: &Answer, rows: &[usize]) -> Vec<Vec<String>> {
 fn value(answer: &Answer, row: &Row, index: usize, m: &Measured) -> String {
     let Some(value) = row.values().and_then(|values| values.get(index)) else { return "-".to_string() };
     let mut text = number(rounded(value / m.unit.1, 4));
-    if answer.study.repeats > 1
+    if answer.study.repeats.are_several()
         && let Some(deviation) = row.deviations().and_then(|deviations| deviations.get(index))
     {
         let _ = write!(text, " +- {}", number(rounded(deviation / m.unit.1, 2)));
@@ -120,6 +123,23 @@ fn remark(answer: &Answer, row: &Row, best: bool) -> String {
         String::new()
     };
     [point, what].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+}
+
+/// What the columns of repeated points hold.
+fn packings(answer: &Answer) -> String {
+    let repeats = answer.study.repeats;
+    if !repeats.are_several() {
+        return String::new();
+    }
+    let runs = if repeats.are_open() {
+        format!("{} runs, {repeats} packings a point", answer.runs())
+    } else {
+        format!("{repeats} packings a point")
+    };
+    format!(
+        "\n  {runs}: mean +- standard deviation of one packing; in brackets the difference on the same packings, with \
+         the 95 % interval\n  of its mean\n"
+    )
 }
 
 /// How the designs do against the constraints that some of them miss.
@@ -167,7 +187,7 @@ fn best(answer: &Answer) -> String {
             let _ = writeln!(text, "  designs that no other beats in every objective: {}", points.join(", "));
         }
     }
-    if let Some(sentence) = answer.against_as_it_is() {
+    for sentence in [answer.certainty(), answer.against_as_it_is()].into_iter().flatten() {
         let _ = writeln!(text, "  {sentence}");
     }
     text

@@ -45,7 +45,7 @@ impl StudyTable {
         let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
         let axes: Vec<(String, String)> =
             list(&found["vary"]).iter().map(|axis| (text(&axis["path"]), text(&axis["unit"]))).collect();
-        let repeats = found["repeats"].as_u64().unwrap_or(1) as usize;
+        let repeats = most_repeats(&found["repeats"]);
         let made = &found["provenance"];
         let mut study = StudyTable {
             name: text(&found["study"]),
@@ -70,19 +70,26 @@ impl StudyTable {
         let mut reader = csv::Reader::from_reader(csv);
         let header: Vec<String> = reader.headers()?.iter().map(str::to_owned).collect();
         let from = 2 + self.axes.len();
-        // each measured value, its deviation where points are repeated, and its difference to the scene as it is
-        let width = if repeats > 1 { 3 } else { 2 };
-        let until = (from..header.len()).step_by(width).find(|index| !is_difference(&header, index + width - 1));
+        // each measured value and its difference to the scene as it is; where points are repeated, its deviation
+        // between both and the interval of the difference behind
+        let with_interval = header.iter().any(|name| named(name).0.ends_with(" difference +-"));
+        let (width, at) = match repeats {
+            0 | 1 => (2, 1),
+            _ => (if with_interval { 4 } else { 3 }, 2),
+        };
+        let until = (from..header.len()).step_by(width).find(|index| !is_difference(&header, index + at));
         let until = until.unwrap_or(header.len());
         self.measured = (from..until).step_by(width).map(|index| named(&header[index])).collect();
-        let best = header.iter().position(|name| name == "best");
+        let place = |name: &str| header.iter().position(|own| own == name);
+        let (best, packings) = (place("best"), place("packings"));
         for row in reader.records() {
             let row = row?;
             let cell = |index: usize| row.get(index).unwrap_or_default();
             let number = |index: usize| cell(index).parse::<f64>().ok();
+            let packings = packings.and_then(|index| cell(index).parse().ok()).unwrap_or(repeats);
             let sample = |index: usize| match (number(index), number(index + 1)) {
-                (Some(mean), Some(deviation)) if repeats > 1 => {
-                    Sample { values: Vec::new(), told: Some((mean, deviation, repeats)) }
+                (Some(mean), Some(deviation)) if packings > 1 => {
+                    Sample { values: Vec::new(), told: Some((mean, deviation, packings)) }
                 }
                 (Some(value), _) => Sample::one(0, value),
                 (None, _) => Sample::default(),
@@ -119,6 +126,11 @@ impl StudyTable {
 pub(super) enum Key {
     AsItIs,
     Levels(BTreeMap<String, String>),
+}
+
+/// Repeats of a point at most: the end of a range, or the number that older versions wrote.
+fn most_repeats(repeats: &Value) -> usize {
+    repeats[1].as_u64().or(repeats.as_u64()).unwrap_or(1) as usize
 }
 
 fn is_difference(header: &[String], index: usize) -> bool {

@@ -81,7 +81,7 @@ pub enum BedUse {
 
 /// One bed for each different section with grains under its sleepers. Fails if the packer would refuse a bed.
 pub fn beds(scenario: &Scenario, use_of_it: BedUse) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
-    let packings = if use_of_it == BedUse::Rig { scenario.solve.grains.repeats } else { 1 };
+    let packings = if use_of_it == BedUse::Rig { scenario.solve.grains.repeats.most } else { 1 };
     beds_of(scenario, use_of_it, &Clumps::made(scenario.solve.seed, packings))
 }
 

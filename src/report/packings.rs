@@ -26,8 +26,8 @@ pub fn packings(html: &mut String, run: &Run) {
     let _ = write!(
         html,
         "<section id=\"packings\"><h2>Over packings</h2><p class=\"caption\">The same scene with {} packings of its \
-         grains. This page shows seed {}; thin curves show seed {}. The standard deviation is for one packing.</p><div \
-         class=\"scroll\"><table><tr><th class=\"text\"></th><th></th><th>this packing</th><th>mean</th><th>standard \
+         grains. This page shows seed {}; thin curves show seed {}. The standard deviation is for one packing, and the interval of 95 % for the mean.</p><div \
+         class=\"scroll\"><table><tr><th class=\"text\"></th><th></th><th>this packing</th><th>mean</th><th>\u{b1} 95 %</th><th>standard \
          deviation</th><th>least</th><th>largest</th></tr>",
         run.packings.len() + 1,
         run.scenario.solve.seed,
@@ -36,7 +36,7 @@ pub fn packings(html: &mut String, run: &Run) {
     for (name, label, unit, size) in ROWS {
         let (Some(scatter), Some(own)) = (run.scatter(name), run.scalar(name)) else { continue };
         let _ = write!(html, "<tr><td class=\"text\">{label}</td><td class=\"text\">{unit}</td>");
-        for value in [own, scatter.mean, scatter.deviation, scatter.least, scatter.largest] {
+        for value in [own, scatter.mean, scatter.confidence, scatter.deviation, scatter.least, scatter.largest] {
             let _ = write!(html, "<td>{}</td>", plain(value / size, 3));
         }
         *html += "</tr>";

@@ -73,8 +73,9 @@ pub fn read_summary(directory: &Path) -> Result<super::Summary, ResultsError> {
 /// Reads a run back from its directory.
 pub fn read(directory: &Path) -> Result<Run, ResultsError> {
     // The summary first: without it the directory holds no run, and the message is to say so.
-    let summary = read_json(&directory.join(SUMMARY))?;
+    let summary: super::Summary = read_json(&directory.join(SUMMARY))?;
     let scenario: crate::scenario::Scenario = read_json(&directory.join(SCENARIO))?;
+    let packings = super::packings::read_packings(directory, &summary.scalars, &scenario.solve)?;
     Ok(Run {
         summary,
         sleepers: read_table(directory)?,
@@ -86,7 +87,7 @@ pub fn read(directory: &Path) -> Result<Run, ResultsError> {
         histories: histories::decode(&directory.join(HISTORIES))?,
         beds: super::under_track_files::read(directory)?,
         tests: None,
-        packings: super::packings::read_packings(directory, &scenario.solve)?,
+        packings,
         scenario,
     })
 }

@@ -42,7 +42,9 @@ pub use bed_tests::{
     BedTest, BedTests, BedTestsView, CycleRow, LoopRow, MeanCycleRow, SensorRow, SpecimenRow, TestTables, VolumeRow,
     read_tests, test_files, tests_file,
 };
-pub use confidence::{confidence_of_difference, mean_and_confidence, mean_and_deviation};
+pub use confidence::{
+    confidence_of_difference, is_known_within, mean_and_confidence, mean_and_deviation, mean_and_interval,
+};
 pub use error::ResultsError;
 pub use evaluate::{SleeperTable, Tables, contact_pressures, evaluate, holds, known, verdict, verdicts};
 pub use files::{NamedBytes, RESOLVED, files, read, read_summary, read_timings, timings_file, write, write_files};
@@ -51,7 +53,7 @@ pub use grains::{Grain, Link, grains, links, places};
 pub use labels::{Label, OF_TESTS, OF_TRACKS};
 pub use laws::{LawCount, LawRow, law_rows, summarise_laws, unsettled};
 pub use level::{LongitudinalLevel, longitudinal_level};
-pub use packings::{OVER_PACKINGS, Packing, Scatter, packing_directory, read_packings};
+pub use packings::{Mean, OVER_PACKINGS, Packing, Scatter, packing_directory, read_packing, read_packings};
 pub use recorder::{RunRecorder, RunTables};
 pub use reliance::{Reliance, Silenced, Unchecked, Warned};
 pub use so_far::SoFar;

@@ -2,7 +2,8 @@
 
 use super::summary::Scalar;
 use super::{ResultsError, Run, SleeperRow};
-use crate::scenario::Solve;
+use super::{is_known_within, mean_and_confidence, mean_and_deviation};
+use crate::scenario::{Grains, Solve};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -35,6 +36,8 @@ pub struct Packing {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scatter {
     pub mean: f64,
+    /// Half the width of the 95 % interval of the mean.
+    pub confidence: f64,
     /// Standard deviation of one packing.
     pub deviation: f64,
     pub least: f64,
@@ -46,17 +49,65 @@ pub fn packing_directory(run: &Path, seed: u64) -> PathBuf {
     run.join(FOLDER).join(seed.to_string())
 }
 
-/// Runs on the further packings that a scene asks for, as far as they are finished, by their seeds.
-pub fn read_packings(run: &Path, solve: &Solve) -> Result<Vec<Packing>, ResultsError> {
-    let seeds = (1..u64::from(solve.grains.repeats)).map(|number| solve.seed + number);
-    let directories = seeds.map(|seed| (seed, packing_directory(run, seed)));
-    let finished = directories.filter(|(_, directory)| super::files::is_finished(directory));
-    finished.map(|(seed, directory)| read_packing(seed, &directory)).collect()
+/// Runs on the further packings that a run asks for, as far as they are finished, by their seeds: in an open range of
+/// repeats the first that suffice.
+pub fn read_packings(run: &Path, own: &BTreeMap<String, Scalar>, solve: &Solve) -> Result<Vec<Packing>, ResultsError> {
+    let mut found = Vec::new();
+    for seed in (1..u64::from(solve.grains.repeats.most)).map(|number| solve.seed + number) {
+        if solve.grains.repeats.are_open() && Mean::of(own, &found).is_enough(&solve.grains) {
+            break;
+        }
+        match read_packing(run, seed)? {
+            Some(packing) => found.push(packing),
+            // those of a range are in order
+            None if solve.grains.repeats.are_open() => break,
+            None => {}
+        }
+    }
+    Ok(found)
 }
 
-fn read_packing(seed: u64, directory: &Path) -> Result<Packing, ResultsError> {
-    let (scalars, sleepers) = (super::read_summary(directory)?.scalars, super::files::read_sleepers(directory)?);
-    Ok(Packing { seed, sleepers, scalars })
+/// The run on the packing of another seed; `None` if it is not finished.
+pub fn read_packing(run: &Path, seed: u64) -> Result<Option<Packing>, ResultsError> {
+    let directory = packing_directory(run, seed);
+    if !super::files::is_finished(&directory) {
+        return Ok(None);
+    }
+    let (scalars, sleepers) = (super::read_summary(&directory)?.scalars, super::files::read_sleepers(&directory)?);
+    Ok(Some(Packing { seed, sleepers, scalars }))
+}
+
+/// The values over packings by which an open range of repeats ends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mean {
+    /// The largest settlement on each packing, m.
+    settlement: Vec<f64>,
+    /// The step at the structure; empty if the track has none.
+    step: Vec<f64>,
+}
+
+impl Mean {
+    /// Of a run and of its further packings.
+    pub fn of(own: &BTreeMap<String, Scalar>, further: &[Packing]) -> Mean {
+        let values = |name: &str| {
+            let all = std::iter::once(own).chain(further.iter().map(|packing| &packing.scalars));
+            all.map(|scalars| Some(scalars.get(name)?.value)).collect::<Option<Vec<f64>>>().unwrap_or_default()
+        };
+        Mean { settlement: values("max_settlement"), step: values("settlement_step") }
+    }
+
+    /// Mean of the largest settlement, m, and half the width of its 95 % interval.
+    pub fn settlement(&self) -> (f64, Option<f64>) {
+        mean_and_confidence(&self.settlement)
+    }
+
+    /// Whether the means are known to within the tolerance, which is a share of the largest settlement, and the least
+    /// number of packings is there.
+    pub fn is_enough(&self, grains: &Grains) -> bool {
+        let reach = *grains.tolerance * self.settlement().0.abs();
+        let known = |values: &[f64]| values.is_empty() || is_known_within(values, reach);
+        self.settlement.len() >= grains.repeats.least as usize && known(&self.settlement) && known(&self.step)
+    }
 }
 
 impl Run {
@@ -66,26 +117,26 @@ impl Run {
         let of = |scalars: &BTreeMap<String, Scalar>| scalars.get(name).map(|scalar| scalar.value);
         let all = std::iter::once(&self.summary.scalars).chain(self.packings.iter().map(|packing| &packing.scalars));
         let values: Vec<f64> = all.map(of).collect::<Option<_>>()?;
-        if values.len() < 2 {
-            return None;
-        }
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        let (mean, confidence) = mean_and_confidence(&values);
+        let (_, deviation) = mean_and_deviation(&values);
         let (least, largest) =
             values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(*v), hi.max(*v)));
-        Some(Scatter { mean, deviation: (squares / (values.len() - 1) as f64).sqrt(), least, largest })
+        Some(Scatter { mean, confidence: confidence?, deviation: deviation?, least, largest })
     }
 
-    /// Takes the runs on further packings, and adds mean and standard deviation of scalars over all of them:
-    /// `max_settlement_mean`, `max_settlement_deviation`.
+    /// Takes the runs on further packings, and adds mean, 95 % interval of the mean and standard deviation of scalars
+    /// over all of them: `max_settlement_mean`, `max_settlement_mean_confidence`, `max_settlement_deviation`.
     pub fn with_packings(mut self, packings: Vec<Packing>) -> Run {
         self.packings = packings;
         for name in OVER_PACKINGS {
             let (Some(scatter), Some(own)) = (self.scatter(name), self.summary.scalars.get(name)) else { continue };
             let scalar = |value: f64| Scalar { value, ..own.clone() };
-            let [mean, deviation] = [scalar(scatter.mean), scalar(scatter.deviation)];
-            self.summary.scalars.insert(format!("{name}_mean"), mean);
-            self.summary.scalars.insert(format!("{name}_deviation"), deviation);
+            let of = [
+                ("mean", scalar(scatter.mean)),
+                ("mean_confidence", scalar(scatter.confidence)),
+                ("deviation", scalar(scatter.deviation)),
+            ];
+            self.summary.scalars.extend(of.map(|(what, scalar)| (format!("{name}_{what}"), scalar)));
         }
         self
     }
@@ -95,6 +146,7 @@ impl Run {
 mod tests {
     use super::*;
     use crate::results::example;
+    use crate::scenario::Repeats;
 
     #[test]
     fn mean_and_deviation_are_those_of_all_packings() {
@@ -117,9 +169,25 @@ mod tests {
     fn a_directory_without_packings_has_none() {
         let folder = tempfile::tempdir().unwrap();
         let mut solve = example::transition().scenario.solve;
-        solve.grains.repeats = 3;
-        assert_eq!(read_packings(folder.path(), &solve).unwrap(), Vec::new());
+        solve.grains.repeats = Repeats::times(3);
+        let none = BTreeMap::new();
+        assert_eq!(read_packings(folder.path(), &none, &solve).unwrap(), Vec::new());
         std::fs::create_dir_all(packing_directory(folder.path(), solve.seed + 1)).unwrap();
-        assert_eq!(read_packings(folder.path(), &solve).unwrap(), Vec::new(), "not finished");
+        assert_eq!(read_packings(folder.path(), &none, &solve).unwrap(), Vec::new(), "not finished");
+    }
+
+    #[test]
+    fn a_range_of_packings_ends_where_the_means_are_known() {
+        let mut grains = example::transition().scenario.solve.grains;
+        grains.repeats = Repeats { least: 3, most: 12 };
+        // 3 values of deviation 0.1: their interval reaches 4.303 * 0.1 / sqrt(3) = 0.248
+        let around = |step: f64| Mean { settlement: vec![9.9, 10.0, 10.1], step: vec![3.0 - step, 3.0, 3.0 + step] };
+        for (tolerance, step, enough) in [(0.025, 0.1, true), (0.0248, 0.1, false), (0.025, 0.2, false)] {
+            grains.tolerance.value = tolerance;
+            assert_eq!(around(step).is_enough(&grains), enough, "{tolerance} {step}");
+        }
+        grains.tolerance.value = 0.5;
+        let two = Mean { settlement: vec![10.0, 10.0], step: Vec::new() };
+        assert!(!two.is_enough(&grains), "fewer than the least");
     }
 }

@@ -225,6 +225,13 @@ impl<'a> RunRecorder<'a> {
         self.due.is_some() || self.parts() > 1
     }
 
+    /// Whether the packings of a test rig that are tested suffice: an open range of repeats ends there.
+    pub fn has_enough(&self) -> bool {
+        let repeats = self.scenario.solve.grains.repeats;
+        let tests = self.tables.tests.as_ref().filter(|_| repeats.are_open());
+        tests.is_some_and(|tests| tests.are_enough(&self.scenario.solve.grains))
+    }
+
     fn is_interrupted(&self) -> bool {
         self.interrupted.is_some_and(|asked| asked.load(Ordering::Relaxed))
     }
@@ -445,7 +452,12 @@ impl Listener for RunRecorder<'_> {
             Event::Packed { bed, found } => {
                 self.bed = Some(bed_summary(&self.scenario.title, bed, &found.packed, None));
             }
-            Event::Tested { tested, bed } => self.tested(tested, bed),
+            Event::Tested { tested, bed } => {
+                self.tested(tested, bed);
+                if self.has_enough() {
+                    return ControlFlow::Break(());
+                }
+            }
             Event::Between(between) => {
                 if let Err(error) = self.keep(between) {
                     self.failure = Some(error);

@@ -106,12 +106,13 @@ fn confidence(
     let mut told = Vec::new();
     if graph.has_grains_under_track() {
         let seed = scenario.solve.seed;
-        told.push(match scenario.solve.grains.repeats {
-            1 => format!(
-                "one packing of the grains under the track was run, seed {seed}: `repeats = 5` runs five packings and \
-                shows their scatter"
+        let repeats = scenario.solve.grains.repeats;
+        told.push(match repeats.are_several() {
+            false => format!(
+                "one packing of the grains under the track was run, seed {seed}: `repeats = 3 .. 12` runs as many \
+                packings as its tolerance needs, and shows their scatter"
             ),
-            count => format!("figures and tables show one packing, seed {seed}, of {count} packings asked for"),
+            true => format!("figures and tables show one packing, seed {seed}, of {repeats} packings asked for"),
         });
         told.extend(risen(tables));
     }
@@ -138,7 +139,7 @@ fn confidence(
     }
     if let Some(repeats) = scalars.get("repeats") {
         told.push(match repeats.value as u64 {
-            1 => "one packing: the scatter between packings is not known; `repeats = 4` shows it".to_owned(),
+            1 => "one packing: the scatter between packings is not known; `repeats = 3 .. 12` shows it".to_owned(),
             n => format!("means of {n} packings; the bands are 95 % confidence intervals of the mean"),
         });
     }

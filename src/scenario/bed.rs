@@ -1,6 +1,6 @@
 //! Data only for models of grains and soil: the bed, the settings of the computation, and the recorded volumes.
 
-use super::{Given, Origin, response::Response};
+use super::{Given, Origin, Repeats, response::Response};
 use crate::diag::Span;
 use serde::{Deserialize, Serialize};
 
@@ -96,8 +96,8 @@ pub struct Grains {
     pub memory: Option<Given>,
     /// Whether the bed of both rails is modelled instead of the bed of one rail.
     pub both_rails: bool,
-    /// Number of packings, each with its own seed.
-    pub repeats: u32,
+    /// Packings, each with its own seed.
+    pub repeats: Repeats,
 }
 
 impl Default for Grains {
@@ -116,7 +116,7 @@ impl Default for Grains {
             budget: None,
             memory: None,
             both_rails: false,
-            repeats: 1,
+            repeats: Repeats::ONCE,
         }
     }
 }

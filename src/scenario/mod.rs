@@ -12,6 +12,7 @@ mod law;
 mod library;
 mod material;
 mod profile;
+mod repeats;
 pub mod response;
 mod study;
 mod track;
@@ -26,6 +27,7 @@ pub use law::{SettlementLaw, law_argument, law_form};
 pub use library::{Evidence, LibraryEntry};
 pub use material::{Bond, Contact, Granular, Layer, Material, Packing, Shape, Soil, Strength, Surface, Surfaces};
 pub use profile::{Cubic, Curve, Piece, Profile, Varying};
+pub use repeats::Repeats;
 pub use study::{Axis, Choice, Goal, Measured, Objective, Sampling, Setting, Spread, Study, Values, Written};
 pub use track::{
     ApproachSlab, AuxiliaryRailSpan, AuxiliaryRails, Crib, Foot, Groundwork, Pad, Rail, RailEnds, Seat, Seating,

@@ -1,6 +1,7 @@
 //! A study: the values of a scene that vary, their ranges, and the requested responses of each point. Pure data. A
 //! varying value is kept as text of the language, because a point is the scene with these fields edited.
 
+use super::Repeats;
 use super::response::{Expectation, Expression};
 use crate::diag::Span;
 use serde::{Deserialize, Serialize};
@@ -14,8 +15,11 @@ pub struct Study {
     pub sampling: Sampling,
     /// Fields that have the same new value in every point.
     pub set: Vec<Setting>,
-    /// Number of runs of each point; run r has the seed of the scene + r.
-    pub repeats: u32,
+    /// Runs of each point; run r has the seed of the scene + r.
+    pub repeats: Repeats,
+    /// Difference of a measured value that does not matter / value of the scene as it is: it ends an open range of
+    /// repeats.
+    pub tolerance: f64,
     /// Largest computing time of the whole study on one core, s, and its place in the text.
     pub budget: Option<(f64, Span)>,
     pub objectives: Vec<Objective>,

@@ -28,6 +28,10 @@ pub(super) const fn way(name: &'static str, form: Form, doc: &'static str) -> Fi
     field(name, form, Need::Alternative, doc)
 }
 
+/// Runs with seeds of their own: a number, or a range in which the results decide.
+pub(super) const REPEATS: Form =
+    Form::OneOf(&[Form::Integer { min: 1, max: 1000 }, Form::Interval(measure("", 1.0, 1000.0))]);
+
 pub(super) const fn measure(unit: &'static str, min: f64, max: f64) -> Measure {
     Measure { unit, min, max, basis: None, varies: Varies::No }
 }

@@ -786,9 +786,10 @@ pub const KINDS: &[Kind] = &[
             ),
             default(
                 "repeats",
-                Form::Integer { min: 1, max: 1000 },
+                REPEATS,
                 "1",
-                "number of packings, each with another seed, for the confidence band",
+                "packings, each with another seed; in a range such as `3 .. 12` as many as give the largest settlement \
+                 and the step at the structure within `tolerance`",
             ),
         ],
         alternatives: &[],

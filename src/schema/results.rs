@@ -1,6 +1,6 @@
 //! Kinds of requests to a scene: records, expectations, studies.
 
-use super::fields::{AXLE_COUNT, default, number, optional, required, word};
+use super::fields::{AXLE_COUNT, REPEATS, default, number, optional, required, word};
 use super::{Field, Form, Kind, Role, Word};
 
 const AXLES_MASS_OR_CYCLES: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 0.0, 1e4), number("cycles", 0.0, 1e9)]);
@@ -108,9 +108,17 @@ pub(super) const STUDY: Kind = Kind {
         optional("set", Form::Settings, "fields that have the same new value in every point"),
         default(
             "repeats",
-            Form::Integer { min: 1, max: 1000 },
+            REPEATS,
             "1",
-            "number of runs of each point, each with another seed",
+            "runs of each point, each with another seed; all points have the same seeds. In a range such as `3 .. 12` \
+             a point has as many as its difference from the best point needs, or from the scene as it is",
+        ),
+        default(
+            "tolerance",
+            number("%", 0.0, 100.0),
+            "5 %",
+            "difference that does not matter, as a share of the value of the scene as it is; it ends an open range of \
+             `repeats`",
         ),
         optional("budget", number("h", 1e-4, 1e5), "computing time on one core; a study that needs more is refused"),
         optional(

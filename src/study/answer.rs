@@ -3,7 +3,7 @@
 
 use super::design::Level;
 use super::miss::Miss;
-use super::perform::{PointOutcome, PointResult};
+use super::outcome::PointOutcome;
 use super::plan::Plan;
 use super::point::PlannedPoint;
 use crate::scenario::{Goal, Objective, Study};
@@ -45,6 +45,14 @@ impl Row {
         }
     }
 
+    /// The measured values of each packing, SI; empty if the point failed.
+    pub(super) fn runs(&self) -> &[Vec<f64>] {
+        match &self.outcome {
+            PointOutcome::Done { runs, .. } => runs,
+            PointOutcome::Failed { .. } => &[],
+        }
+    }
+
     /// The miss of each constraint; empty if the point failed.
     pub fn misses(&self) -> &[Option<Miss>] {
         match &self.outcome {
@@ -80,13 +88,13 @@ impl Row {
 }
 
 impl Answer {
-    pub fn new(title: &str, plan: &Plan, results: Vec<PointResult>) -> Answer {
-        let rows = plan.points.iter().zip(results);
-        let row = |(p, r): (&PlannedPoint, PointResult)| Row {
+    pub fn new(title: &str, plan: &Plan, outcomes: Vec<PointOutcome>) -> Answer {
+        let rows = plan.points.iter().zip(outcomes);
+        let row = |(p, outcome): (&PlannedPoint, PointOutcome)| Row {
             number: p.number,
             as_it_is: p.as_it_is,
             levels: p.levels.clone(),
-            outcome: r.outcome,
+            outcome,
         };
         let rows = rows.map(row).collect();
         Answer { title: title.to_string(), study: plan.study.clone(), rows, left_out: plan.left_out }
@@ -119,12 +127,14 @@ impl Answer {
 
     /// Indices of the designs that no other design beats: with one objective the best, with several the Pareto front in
     /// the order of the first objective. Only designs that meet every constraint are compared; equal designs are all
-    /// included. The scene as it is is included if it is a point of the design.
+    /// included. The scene as it is is included if it is a point of the design. Designs that were given up after
+    /// fewer packings are not compared by means again.
     pub fn best(&self) -> Vec<usize> {
         if self.study.objectives.is_empty() {
             return Vec::new();
         }
-        let feasible = self.designs().filter(|(_, row)| row.feasible());
+        let most = self.designs().filter(|(_, row)| row.feasible()).map(|(_, row)| row.packings()).max();
+        let feasible = self.designs().filter(|(_, row)| row.feasible() && Some(row.packings()) == most);
         let feasible: Vec<(usize, Vec<f64>)> = feasible.filter_map(|(i, row)| Some((i, self.costs(row)?))).collect();
         let mut front: Vec<&(usize, Vec<f64>)> =
             feasible.iter().filter(|(_, own)| !feasible.iter().any(|(_, other)| beats(other, own))).collect();

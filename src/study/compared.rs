@@ -2,8 +2,9 @@
 
 use super::answer::{Answer, Row, beats};
 use super::miss::Miss;
-use crate::scenario::Measured;
+use super::packings::Paired;
 use crate::scenario::response::{Expectation, Expression, Reduction, Response};
+use crate::scenario::{Goal, Measured, Objective};
 use crate::units::number;
 
 /// Difference of a measured value between a point and the scene as it is.
@@ -15,6 +16,8 @@ pub struct Difference {
     /// of sign, a place or
     /// a count.
     pub share: Option<f64>,
+    /// Half the width of the 95 % interval of `of`, SI; `None` of one packing.
+    pub half: Option<f64>,
 }
 
 /// Results of the designs for one constraint.
@@ -32,32 +35,36 @@ pub struct MetAndMissed {
 }
 
 impl Difference {
-    fn between(what: &Measured, value: f64, as_it_is: f64) -> Difference {
+    fn from_first(what: &Measured, Paired { of, half, first }: Paired) -> Difference {
         let place_or_count = matches!(&what.expression, Expression::Measure(m)
             if m.reduction == Reduction::PlaceOfMax || m.response == Response::VoidedSleepers);
-        let of_a_kind = value * as_it_is > 0.0 || value == 0.0 && as_it_is != 0.0;
-        let share = (value - as_it_is) / as_it_is.abs();
-        Difference {
-            of: value - as_it_is,
-            share: (of_a_kind && !place_or_count && share.abs() < 10.0).then_some(share),
-        }
+        let value = first + of;
+        let of_a_kind = value * first > 0.0 || value == 0.0 && first != 0.0;
+        let share = of / first.abs();
+        let share = (of_a_kind && !place_or_count && share.abs() < 10.0).then_some(share);
+        Difference { of, share, half }
     }
 
-    /// `-38 %`, `+0.4 mm` if a share has no meaning, or `same`.
+    /// `-38 %`, `+0.4 mm` if a share has no meaning, or `same`; over packings `-38 +- 5 %`.
     pub fn text(&self, what: &Measured) -> String {
-        if self.of == 0.0 {
+        let half = self.half.filter(|half| *half > 0.0);
+        if self.of == 0.0 && half.is_none() {
             return "same".to_string();
         }
-        let Some(share) = self.share else {
-            let of = format!("{} {}", signed(self.of / what.unit.1), what.unit.0);
-            return of.trim_end().to_string();
+        let (of, half, unit) = match self.share {
+            Some(share) => (share * 100.0, half.map(|half| half * (share / self.of).abs() * 100.0), "%"),
+            None => (self.of / what.unit.1, half.map(|half| half / what.unit.1), what.unit.0.as_str()),
         };
-        format!("{} %", signed(share * 100.0))
+        let half = half.map_or(String::new(), |half| format!(" +- {}", two_digits(half)));
+        format!("{}{half} {unit}", signed(of)).trim_end().to_string()
     }
 
-    /// `38 % less than as it is`
+    /// `38 % less than as it is`, `38 +- 5 % less than as it is`
     pub fn words(&self, what: &Measured) -> String {
         let text = self.text(what);
+        if self.half.is_some_and(|half| self.of.abs() <= half && half > 0.0) {
+            return format!("not surely other than as it is ({text})");
+        }
         match text.strip_prefix(['-', '+']) {
             Some(amount) if self.of < 0.0 => format!("{amount} less than as it is"),
             Some(amount) => format!("{amount} more than as it is"),
@@ -66,19 +73,27 @@ impl Difference {
     }
 }
 
+/// Two digits below ten, whole numbers above.
+fn rounded(x: f64) -> f64 {
+    if x.abs() < 10.0 { format!("{x:.1e}").parse().unwrap_or(x) } else { x.round() }
+}
+
+fn two_digits(x: f64) -> String {
+    number(rounded(x))
+}
+
 /// A number with its sign: two digits below ten, whole numbers above.
 fn signed(x: f64) -> String {
-    let rounded = if x.abs() < 10.0 { format!("{x:.1e}").parse().unwrap_or(x) } else { x.round() };
+    let rounded = rounded(x);
     if rounded > 0.0 { format!("+{}", number(rounded)) } else { number(rounded) }
 }
 
 impl Answer {
-    /// Difference of a row from the scene as it is in the measured value of that index; `None` if one of both failed,
-    /// and for the scene as it is itself.
+    /// Difference of a row from the scene as it is in the measured value of that index, on the packings of both; `None`
+    /// if one of both failed, and for the scene as it is itself.
     pub fn difference(&self, row: &Row, index: usize) -> Option<Difference> {
         let as_it_is = self.as_it_is().filter(|_| !row.as_it_is)?;
-        let (value, before) = (row.values()?.get(index)?, as_it_is.values()?.get(index)?);
-        Some(Difference::between(self.study.measured().get(index)?, *value, *before))
+        Some(Difference::from_first(self.study.measured().get(index)?, row.paired(as_it_is, index)?))
     }
 
     /// Every constraint, with the results of the designs that ran.
@@ -113,7 +128,7 @@ impl Answer {
         let own = best.iter().any(|index| self.rows[*index].as_it_is);
         let sentence = match (self.study.objectives.len(), own) {
             (1, true) => "No design is better than the scene as it is, which is one of them.".to_string(),
-            (1, false) => self.best_against(&self.rows[*best.first()?], as_it_is)?,
+            (1, false) => self.best_against(&self.rows[*best.first()?])?,
             (_, true) => "One of them is the scene as it is.".to_string(),
             (_, false) => self.front_against(&best, as_it_is)?,
         };
@@ -124,13 +139,16 @@ impl Answer {
     }
 
     /// The best design by one objective.
-    fn best_against(&self, best: &Row, as_it_is: &Row) -> Option<String> {
-        if self.costs(best)?[0] >= self.costs(as_it_is)?[0] {
+    fn best_against(&self, best: &Row) -> Option<String> {
+        let Objective { goal, of: what } = &self.study.objectives[0];
+        let index = self.study.measured().iter().position(|m| m.text == what.text)?;
+        // on the packings of both
+        let difference = self.difference(best, index)?;
+        let worse = if *goal == Goal::Minimise { difference.of } else { -difference.of };
+        if worse >= 0.0 {
             return Some("No design is better than the scene as it is.".to_string());
         }
-        let what = &self.study.objectives[0].of;
-        let index = self.study.measured().iter().position(|m| m.text == what.text)?;
-        Some(format!("`{}` is {}.", what.text, self.difference(best, index)?.words(what)))
+        Some(format!("`{}` is {}.", what.text, difference.words(what)))
     }
 
     /// The designs of the front.

@@ -4,7 +4,7 @@
 //! Runs are stored by the content of their points and not by a number, so that no result can be taken for a result of
 //! another scene, and any number of processes can add results.
 
-use super::{Answer, Plan, PlannedPoint, PointOutcome, PointResult, Repeat, values};
+use super::{Answer, Plan, PlannedPoint, Repeat, values};
 use crate::compile::{Compiled, fingerprint};
 use crate::results::RESOLVED;
 use crate::store::{Directory, Mode, StoreError, Work};
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Outcomes of a finished study by the fingerprints of their points.
+/// Runs of a finished study by the fingerprints of their points.
 const POINTS: &str = "points.json";
 /// File name of the page of a study.
 pub const PAGE: &str = "study.html";
@@ -22,12 +22,12 @@ pub const PAGE: &str = "study.html";
 #[derive(Debug)]
 pub struct StudyFolder {
     directory: Directory,
-    /// The results of a finished study, without results that an older version stored in another form.
-    finished: Option<BTreeMap<String, PointOutcome>>,
+    /// The runs of a finished study, without results that an older version stored in another form.
+    finished: Option<BTreeMap<String, Vec<Repeat>>>,
     /// Constraints of the study: an older version did not store the misses.
     constraints: usize,
-    /// Runs of each point.
-    repeats: u32,
+    /// Runs of each point at most.
+    most: u32,
 }
 
 impl StudyFolder {
@@ -39,12 +39,12 @@ impl StudyFolder {
         let read = |bytes: Vec<u8>| {
             let all: BTreeMap<String, Value> =
                 serde_json::from_slice(&bytes).map_err(|cause| StoreError::damaged(&out.join(POINTS), cause))?;
-            let outcome = |value: Value| serde_json::from_value(value).ok();
-            Ok(all.into_iter().filter_map(|(point, value)| Some((point, outcome(value)?))).collect())
+            let runs = |value: Value| serde_json::from_value(value).ok();
+            Ok(all.into_iter().filter_map(|(point, value)| Some((point, runs(value)?))).collect())
         };
         let constraints = plan.study.constraints.len();
-        let (finished, repeats) = (points.map(read).transpose()?, plan.study.repeats);
-        Ok(StudyFolder { directory, finished, constraints, repeats })
+        let (finished, most) = (points.map(read).transpose()?, plan.study.repeats.most);
+        Ok(StudyFolder { directory, finished, constraints, most })
     }
 
     /// The directory itself.
@@ -57,26 +57,28 @@ impl StudyFolder {
         self.finished.is_some()
     }
 
-    /// The stored result of a point; `None` if it has not run, or if an older version stored less. Fails if its file is
-    /// damaged.
-    pub fn known(&self, point: &PlannedPoint) -> Result<Option<PointResult>, StoreError> {
-        let outcome = match self.finished.as_ref().and_then(|finished| finished.get(&point.fingerprint)) {
-            Some(outcome) => Some(outcome.clone()),
-            None => {
-                let runs: Option<Vec<Repeat>> =
-                    (0..self.repeats).map(|repeat| self.known_run(point, repeat)).collect::<Result<_, _>>()?;
-                runs.map(|runs| PointResult::from_repeats(point, &runs).outcome)
+    /// The stored runs of a point from the first to the last without a gap; results of an older version that stored
+    /// less are left out. Fails if a file is damaged.
+    pub fn runs(&self, point: &PlannedPoint) -> Result<Vec<Repeat>, StoreError> {
+        let mut runs = Vec::new();
+        for repeat in 0..self.most {
+            match self.known_run(point, repeat)? {
+                Some(run) => runs.push(run),
+                None => break,
             }
-        };
-        let whole = outcome.filter(|outcome| match outcome {
-            PointOutcome::Done { misses, .. } => misses.len() == self.constraints,
-            PointOutcome::Failed { .. } => true,
-        });
-        Ok(whole.map(|outcome| PointResult { number: point.number, outcome }))
+        }
+        Ok(runs)
     }
 
     /// The stored run of a point; `None` if it has not run. Fails if its file is damaged.
     pub fn known_run(&self, point: &PlannedPoint, repeat: u32) -> Result<Option<Repeat>, StoreError> {
+        let is_whole = |run: &Repeat| match run {
+            Repeat::Done { misses, .. } => misses.len() == self.constraints,
+            Repeat::Failed { .. } => true,
+        };
+        if let Some(runs) = self.finished.as_ref().and_then(|finished| finished.get(&point.fingerprint)) {
+            return Ok(runs.get(repeat as usize).filter(|run| is_whole(run)).cloned());
+        }
         let Some(bytes) = self.directory.kept(&point.key(repeat))? else { return Ok(None) };
         let run = serde_json::from_slice(&bytes);
         run.map(Some).map_err(|cause| StoreError::damaged(self.directory.path(), cause))
@@ -100,7 +102,7 @@ impl StudyFolder {
     pub fn finish(
         mut self,
         plan: &Plan,
-        answer: &Answer,
+        (answer, runs): (&Answer, &[Vec<Repeat>]),
         (page, resolved): (&str, Option<&str>),
         compiled: &Compiled,
         timings: &BTreeMap<String, f64>,
@@ -109,15 +111,11 @@ impl StudyFolder {
             answer.csv().map_err(|cause| StoreError::unwritable(&self.directory.path().join("study.csv"), cause))?;
         let mut found = answer.json();
         found["provenance"] = provenance(compiled);
-        let outcomes: BTreeMap<&String, &PointOutcome> = plan
-            .points
-            .iter()
-            .map(|point| &point.fingerprint)
-            .zip(answer.rows.iter().map(|row| &row.outcome))
-            .collect();
+        let runs: BTreeMap<&String, &Vec<Repeat>> =
+            plan.points.iter().map(|point| &point.fingerprint).zip(runs).collect();
         let files = [
             ("design.json", self.text("design.json", &design(plan, compiled))?),
-            (POINTS, self.text(POINTS, &outcomes)?),
+            (POINTS, self.text(POINTS, &runs)?),
             ("study.csv", csv.into_bytes()),
             ("study.json", self.text("study.json", &found)?),
             (PAGE, page.as_bytes().to_vec()),

@@ -33,12 +33,18 @@ impl Answer {
         header.extend(study.axes.iter().map(|axis| with_unit(&axis.path, &axis.unit)));
         for m in study.measured() {
             header.push(with_unit(&m.text, &m.unit.0));
-            if study.repeats > 1 {
+            if study.repeats.are_several() {
                 header.push(with_unit(&format!("{} sd", m.text), &m.unit.0));
             }
             header.push(with_unit(&format!("{} difference", m.text), &m.unit.0));
+            if study.repeats.are_several() {
+                header.push(with_unit(&format!("{} difference +-", m.text), &m.unit.0));
+            }
         }
         header.extend(study.constraints.iter().map(|c| with_unit(&format!("{} missed by", c.text), &c.unit.0)));
+        if study.repeats.are_several() {
+            header.push("packings".to_string());
+        }
         header.extend(["constraints_met", "best", "status", "reason"].map(String::from));
         header
     }
@@ -54,14 +60,21 @@ impl Answer {
         for (i, m) in study.measured().iter().enumerate() {
             let at = |values: Option<&[f64]>| values.and_then(|values| values.get(i)).copied();
             cells.push(shown(at(row.values()), m.unit.1));
-            if study.repeats > 1 {
+            if study.repeats.are_several() {
                 cells.push(shown(at(row.deviations()), m.unit.1));
             }
-            cells.push(shown(self.difference(row, i).map(|difference| difference.of), m.unit.1));
+            let difference = self.difference(row, i);
+            cells.push(shown(difference.map(|difference| difference.of), m.unit.1));
+            if study.repeats.are_several() {
+                cells.push(shown(difference.and_then(|difference| difference.half), m.unit.1));
+            }
         }
         for (i, c) in study.constraints.iter().enumerate() {
             let by = row.misses().get(i).map(|miss| miss.map_or(0.0, |miss| miss.by));
             cells.push(shown(by, c.unit.1));
+        }
+        if study.repeats.are_several() {
+            cells.push(row.packings().to_string());
         }
         let ran = row.failed().is_none();
         cells.push(if ran { yes(row.feasible()) } else { String::new() });
@@ -94,6 +107,9 @@ impl Answer {
             "sampling": sampling,
             "set": study.set.iter().map(|s| s.line()).collect::<Vec<_>>(),
             "repeats": study.repeats,
+            "runs": self.runs(),
+            "tolerance": study.tolerance,
+            "certainty": self.certainty(),
             "objectives": objectives.collect::<Vec<_>>(),
             "subject_to": study.constraints.iter().map(|c| &c.text).collect::<Vec<_>>(),
             "points": self.designs().count(),
@@ -124,6 +140,7 @@ impl Answer {
                 "unit": m.unit.0,
                 "difference": difference.map(|d: Difference| d.of / m.unit.1),
                 "share": difference.and_then(|d| d.share),
+                "confidence": difference.and_then(|d| d.half).map(|half| half / m.unit.1),
             });
             (m.text.clone(), measured)
         };
@@ -136,7 +153,7 @@ impl Answer {
         let (point, as_it_is) = (row.number, row.as_it_is);
         let lines = if row.designed() { self.lines(row) } else { Vec::new() };
         json!({
-            "point": point, "as_it_is": as_it_is, "lines": lines, "values": values,
+            "point": point, "as_it_is": as_it_is, "packings": row.packings(), "lines": lines, "values": values,
             "missed": missed.collect::<Vec<_>>(),
         })
     }

@@ -11,8 +11,8 @@ use crate::compile::Compiled;
 use crate::diag::{Code, Diagnostic, has_errors};
 use crate::graph::Cost;
 use crate::results;
-use crate::scenario::Study;
 use crate::scenario::response::Expectation;
+use crate::scenario::{Repeats, Study};
 use crate::units::number;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -35,19 +35,22 @@ impl Plan {
         self.points.iter().filter(|point| point.number > 0).count()
     }
 
-    /// Runs of all points.
-    pub fn runs(&self) -> usize {
-        self.points.len() * self.study.repeats as usize
+    /// Runs of all points, at least and at most.
+    pub fn runs(&self) -> [usize; 2] {
+        let Repeats { least, most } = self.study.repeats;
+        [least, most].map(|repeats| self.points.len() * repeats as usize)
     }
 
-    /// Time of all runs on one core, estimated, s.
-    pub fn seconds(&self) -> f64 {
-        self.points.iter().map(|p| p.seconds).sum::<f64>() * f64::from(self.study.repeats)
+    /// Time of all these runs on one core, estimated, s.
+    pub fn seconds(&self) -> [f64; 2] {
+        let Repeats { least, most } = self.study.repeats;
+        let once = self.points.iter().map(|p| p.seconds).sum::<f64>();
+        [least, most].map(|repeats| once * f64::from(repeats))
     }
 
     /// The most memory of this number of simultaneous runs, estimated, bytes.
     pub fn bytes(&self, at_a_time: usize) -> u64 {
-        let each = self.points.iter().flat_map(|p| (0..self.study.repeats).map(|_| p.bytes));
+        let each = self.points.iter().flat_map(|p| (0..self.study.repeats.least).map(|_| p.bytes));
         let mut each: Vec<u64> = each.collect();
         each.sort_unstable_by(|a, b| b.cmp(a));
         each.iter().take(at_a_time).fold(0, |sum, bytes| sum.saturating_add(*bytes))
@@ -185,13 +188,14 @@ fn against_the_whole(plan: &Plan, all: usize) -> Option<Diagnostic> {
         );
     }
     let (budget, span) = study.budget?;
-    let seconds = plan.seconds();
+    let [_, seconds] = plan.seconds();
     (seconds > budget).then(|| {
         let hours = |s: f64| number((s / 36.0).round() / 100.0);
-        let runs = plan.runs();
+        let [_, runs] = plan.runs();
         let message = format!(
-            "study `{}` takes about {} h of computing for {runs} runs, more than its budget of {} h",
+            "study `{}` takes {} {} h of computing for {runs} runs, more than its budget of {} h",
             study.name,
+            if study.repeats.are_open() { "up to" } else { "about" },
             hours(seconds),
             hours(budget)
         );
@@ -203,7 +207,7 @@ fn against_the_whole(plan: &Plan, all: usize) -> Option<Diagnostic> {
 
 /// Repeats differ by their seed, which needs a line in the scene.
 fn without_seed(scene: Scene<'_>, plan: &Plan) -> Option<Diagnostic> {
-    let point = plan.points.first().filter(|_| plan.study.repeats > 1)?;
+    let point = plan.points.first().filter(|_| plan.study.repeats.are_several())?;
     let compiled = scene.compile(&point.overrides_of(1));
     let mistake = compiled.diagnostics.iter().find(|d| d.is_error())?;
     let name = &plan.study.name;

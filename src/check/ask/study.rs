@@ -4,6 +4,7 @@ use super::reader::{Counting, Questions, questions};
 use crate::check::evaluate::evaluator::Evaluator;
 use crate::check::evaluate::value::{Record, Val};
 use crate::check::findings::Findings;
+use crate::check::parts::repeats::repeats;
 use crate::check::text::scope::Scope;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Axis, Goal, Objective, Sampling, Study, Values};
@@ -33,6 +34,7 @@ fn study(record: &Record, asked: &Questions, eval: &mut Evaluator<'_>) -> Option
     let axes = asked.axes()?;
     let set = if record.get("set").is_some() { asked.settings()? } else { Vec::new() };
     let sampling = sampling(record)?;
+    let repeats = repeats(record, findings)?;
     let own = axes.iter().map(|a| (&a.path, a.span)).chain(set.iter().map(|s| (&s.path, s.span)));
     let own: Vec<(String, Span)> = own.map(|(path, span)| (path.clone(), span)).collect();
     let apart = varied_once(&own, findings) & of_this_file(&own, &eval.scopes[eval.main], findings);
@@ -47,7 +49,8 @@ fn study(record: &Record, asked: &Questions, eval: &mut Evaluator<'_>) -> Option
         axes,
         sampling,
         set,
-        repeats: record.number("repeats")?.value as u32,
+        repeats,
+        tolerance: record.number("tolerance")?.value,
         budget,
         objectives: objectives.collect(),
         report: asked.measured("report").collect(),

@@ -17,6 +17,7 @@ mod material;
 mod plate;
 pub mod rails;
 pub mod records;
+pub mod repeats;
 mod seats;
 mod sides;
 pub mod solve;

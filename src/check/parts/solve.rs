@@ -3,6 +3,7 @@
 use super::asked::tier;
 use super::given::given;
 use super::law::laws;
+use super::repeats::repeats;
 use super::traffic::whole_axles;
 use crate::check::evaluate::number::Number;
 use crate::check::evaluate::value::{Record, Slot, Val};
@@ -120,7 +121,7 @@ pub fn grains(record: &Record, places: Option<&Places>, findings: &mut Findings)
         budget: optional("budget")?,
         memory: optional("memory")?,
         both_rails: record.word("symmetry")? == "full",
-        repeats: record.number("repeats")?.value as u32,
+        repeats: repeats(record, findings)?,
     })
 }
 

@@ -71,7 +71,7 @@ pub(super) fn main_effects(answer: &Answer) -> Option<(String, String)> {
             caption += &key(&answer.study.axes[axis].path, &groups);
         }
     }
-    if answer.study.repeats > 1 {
+    if answer.study.repeats.are_several() {
         caption += " Whiskers: plus and minus one standard deviation of the repeats. A difference smaller than the \
             whiskers may be chance.";
     }

@@ -60,8 +60,8 @@ fn subtitle(answer: &Answer) -> String {
         Some(_) => ", and the scene as it is",
         None => "",
     };
-    if study.repeats > 1 {
-        let _ = write!(text, ", each run {} times", study.repeats);
+    if study.repeats.are_several() {
+        let _ = write!(text, ", each on {} packings, {} runs in all", study.repeats, answer.runs());
     }
     text += ". ";
     if answer.left_out > 0 {
@@ -113,7 +113,8 @@ fn best(html: &mut String, answer: &Answer, file: &str) {
         (false, 1) => "One point is better than all others in every objective.".to_owned(),
         (false, n) => format!("{n} points are best: no other point is better in every objective."),
     };
-    let against = answer.against_as_it_is().map_or(String::new(), |sentence| format!(" {sentence}"));
+    let sentences = [answer.certainty(), answer.against_as_it_is()].into_iter().flatten();
+    let against: String = sentences.map(|sentence| format!(" {sentence}")).collect();
     let _ = write!(html, "<p class=\"caption\">{}</p>", prose(&format!("{caption}{against}")));
     table(html, answer, &beside_as_it_is(answer, &best[..best.len().min(MOST_SHOWN)]), false);
     if best.len() > MOST_SHOWN {
@@ -186,7 +187,12 @@ fn points(html: &mut String, answer: &Answer) {
     let rows: Vec<usize> = (0..answer.rows.len()).collect();
     *html += "<section id=\"points\" class=\"long\"><h2>All points</h2><p class=\"caption\">First the scene as it is, \
               then the points in the order of the design, each with its difference to the scene as it is. The best \
-              points are marked. The file <code>study.csv</code> has the same table.</p>";
+              points are marked. The file <code>study.csv</code> has the same table.";
+    if answer.study.repeats.are_several() {
+        *html += " A value is the mean over the packings of the point \u{b1} the standard deviation of one packing. A \
+                  difference is the mean over the packings of both points \u{b1} its 95 % interval.";
+    }
+    *html += "</p>";
     table(html, answer, &rows, true);
     *html += "</section>\n";
 }

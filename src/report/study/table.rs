@@ -20,6 +20,10 @@ pub(super) fn table(html: &mut String, answer: &Answer, rows: &[usize], whole: b
     };
     study.axes.iter().for_each(|axis| head(html, &axis.path, &axis.unit));
     measured.iter().for_each(|m| head(html, &m.text, &m.unit.0));
+    let counted = study.repeats.are_open();
+    if counted {
+        *html += "<th>packings</th>";
+    }
     if whole {
         *html += "<th class=\"text\">status</th>";
     }
@@ -36,6 +40,9 @@ pub(super) fn table(html: &mut String, answer: &Answer, rows: &[usize], whole: b
         (0..measured.len()).for_each(|m| {
             let _ = write!(html, "<td>{}</td>", cell(answer, row, m));
         });
+        if counted {
+            let _ = write!(html, "<td>{}</td>", row.packings());
+        }
         if whole {
             let (class, words) = status(answer, row, best.contains(index));
             let _ = write!(html, "<td class=\"text {class}\">{}</td>", prose(&words));
@@ -59,9 +66,9 @@ fn cell(answer: &Answer, row: &Row, index: usize) -> String {
     let m = answer.study.measured()[index];
     let PointOutcome::Done { values, deviations, .. } = &row.outcome else { return "\u{2013}".to_owned() };
     let spread = plain(deviations[index] / m.unit.1, 2);
-    let spread = if answer.study.repeats > 1 { format!(" \u{b1} {spread}") } else { String::new() };
+    let spread = if answer.study.repeats.are_several() { format!(" \u{b1} {spread}") } else { String::new() };
     let difference = answer.difference(row, index).map(|difference| {
-        let text = difference.text(m).replace('-', "\u{2212}").replace(' ', "\u{a0}");
+        let text = difference.text(m).replace("+-", "\u{b1}").replace('-', "\u{2212}").replace(' ', "\u{a0}");
         format!(" <small>{}</small>", escape(&text))
     });
     plain(values[index] / m.unit.1, 4) + &spread + &difference.unwrap_or_default()

@@ -1,9 +1,11 @@
 //! The scalars of a test over its packings, and the expectations of the scene.
 
-use super::super::{HistoryRow, Scalar, SleeperTable, Tables, broken_bonds, broken_share, mean_and_confidence};
+use super::super::{
+    HistoryRow, Scalar, SleeperTable, Tables, broken_bonds, broken_share, is_known_within, mean_and_confidence,
+};
 use super::{BedTest, BedTests};
-use crate::scenario::Track;
 use crate::scenario::response::Response;
+use crate::scenario::{Grains, Track};
 use crate::solvers::granular::rig::{Cycle, SpecimenState};
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
@@ -77,6 +79,24 @@ fn scalars(tests: &[BedTest], plate: Option<f64>) -> BTreeMap<String, Scalar> {
     scalars.insert("cycles".to_owned(), Scalar::new(last as f64, "1"));
     scalars.insert("repeats".to_owned(), Scalar::new(tests.len() as f64, "1"));
     scalars
+}
+
+impl BedTests {
+    /// Whether these packings suffice for an open range of repeats: the mean of the largest settlement is known to
+    /// within the tolerance, of a specimen its largest deviator.
+    pub fn are_enough(&self, grains: &Grains) -> bool {
+        let value = |test: &BedTest| match test.answer.specimen.is_empty() {
+            true => test.answer.cycles.iter().map(|cycle| (cycle.number, cycle.settlement)).max_by(later_and_deeper),
+            false => test.answer.specimen.iter().map(|state| (0, state.deviator())).max_by(later_and_deeper),
+        };
+        let values: Vec<f64> = self.tests.iter().filter_map(value).map(|(_, value)| value).collect();
+        let reach = *grains.tolerance * mean_and_confidence(&values).0.abs();
+        values.len() >= grains.repeats.least as usize && is_known_within(&values, reach)
+    }
+}
+
+fn later_and_deeper(one: &(u64, f64), other: &(u64, f64)) -> std::cmp::Ordering {
+    one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
 }
 
 /// Quantities that expressions can use, as means over packings.

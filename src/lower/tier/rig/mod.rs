@@ -63,7 +63,7 @@ impl Tier for TestRig {
         let bed = nodes.iter().find_map(|node| if let Model::Bed(bed) = &node.model { Some(&**bed) } else { None });
         let cost = cost::of_rig(scenario, bed);
         let kept = kept(scenario, cycles(&loads(scenario)));
-        let tests = Tests { first: 0, packings: scenario.solve.grains.repeats, kept };
+        let tests = Tests { first: 0, packings: scenario.solve.grains.repeats.most, kept };
         Ok(Proposal {
             edges: edges(&nodes),
             nodes,
