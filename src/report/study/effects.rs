@@ -72,8 +72,7 @@ pub(super) fn main_effects(answer: &Answer) -> Option<(String, String)> {
         }
     }
     if answer.study.repeats.are_several() {
-        caption += " Whiskers: plus and minus one standard deviation of the repeats. A difference smaller than the \
-            whiskers may be chance.";
+        caption += " Whiskers: plus and minus one standard deviation of one packing.";
     }
     Some((svg.finish(WIDTH, height, "Main effects of the varied values"), caption))
 }

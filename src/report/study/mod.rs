@@ -1,6 +1,7 @@
 //! The page of a study: the best designs beside the scene as it is, with the lines to paste; missed constraints; the
 //! Pareto front, main effects, and every point.
 
+mod differences;
 mod effects;
 mod front;
 mod plane;
@@ -36,6 +37,9 @@ pub fn study_page(answer: &Answer, file: &str, design: Option<&Scenario>) -> Str
     }
     if let Some((svg, caption)) = front::pareto(answer) {
         picture(&mut html, "front", "Pareto front", &caption, &svg);
+    }
+    if let Some((svg, caption)) = differences::differences(answer) {
+        picture(&mut html, "differences", "Differences from the scene as it is", &caption, &svg);
     }
     if let Some((svg, caption)) = effects::main_effects(answer) {
         picture(&mut html, "effects", "Main effects", &caption, &svg);

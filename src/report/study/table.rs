@@ -69,7 +69,9 @@ fn cell(answer: &Answer, row: &Row, index: usize) -> String {
     let spread = if answer.study.repeats.are_several() { format!(" \u{b1} {spread}") } else { String::new() };
     let difference = answer.difference(row, index).map(|difference| {
         let text = difference.text(m).replace("+-", "\u{b1}").replace('-', "\u{2212}").replace(' ', "\u{a0}");
-        format!(" <small>{}</small>", escape(&text))
+        // an interval needs a line of its own
+        let line = if difference.half.is_some() { "<br>" } else { " " };
+        format!("{line}<small>{}</small>", escape(&text))
     });
     plain(values[index] / m.unit.1, 4) + &spread + &difference.unwrap_or_default()
 }
