@@ -85,6 +85,8 @@ fn what_cannot_be_fitted_says_why() {
         (vec!["scene.track", "--loads", "2..3"], "1 is the train of the scene"),
         (vec!["scene.track", "--voids", "3 kN"], "expected a length"),
         (vec!["scene.track", "--out", "scene.track"], "the scene itself"),
+        (vec!["scene.track", "--out", "my-law.track"], "write `--out my_law.track`"),
+        (vec!["scene.track", "--out", "2nd.txt"], "write `--out nd.track`"),
         (vec!["scene.track", "--fit", "a"], "cannot be used with"),
         (vec!["scene.track", "--out", "none/x.track"], "there is no folder `none`"),
     ] {

@@ -74,8 +74,29 @@ fn factors(text: &str) -> Result<[f64; 2], String> {
     Err("1 is the train of the scene: the least factor is above 0 and at most 1, the largest is from 1 to 10".into())
 }
 
+/// Fails if no `use` can name the file.
+fn named_as_module(out: &Path) -> Result<(), String> {
+    let name = out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let is_name = |stem: &str| {
+        let known = |character: char| character.is_ascii_alphanumeric() || character == '_';
+        stem.starts_with(|first: char| first.is_ascii_alphabetic()) && stem.chars().all(known)
+    };
+    if name.strip_suffix(".track").is_some_and(is_name) {
+        return Ok(());
+    }
+    let stem = out.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().to_lowercase());
+    let letters = stem.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect::<String>();
+    let letters = letters.trim_start_matches(|c: char| !c.is_ascii_alphabetic()).trim_end_matches('_').to_owned();
+    let better = if letters.is_empty() { "on_grains".to_owned() } else { letters };
+    Err(format!(
+        "no scene can `use` a module called `{name}`: a name has letters, digits and `_`; write `--out {}`",
+        out.with_file_name(format!("{better}.track")).display()
+    ))
+}
+
 pub(super) fn run(scene: &SceneArguments, asked: &GrainArguments, format: Format) -> Outcome {
-    if let Some(Err(why)) = asked.out.as_deref().map(|out| scene.is_beside(out)) {
+    let is_module = |out: &Path| scene.is_beside(out).and_then(|()| named_as_module(out));
+    if let Some(Err(why)) = asked.out.as_deref().map(is_module) {
         terminal::error(&why);
         return Outcome::Usage;
     }

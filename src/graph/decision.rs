@@ -93,7 +93,11 @@ pub struct TestWork {
     pub packing_steps: f64,
     /// Steps of the test, including the setting down.
     pub test_steps: f64,
+    /// Packings at most; cost and steps are those of all.
     pub packings: u32,
+    /// Packings at least: in an open range the results decide.
+    #[serde(default)]
+    pub least_packings: u32,
 }
 
 impl Cost {

@@ -356,6 +356,7 @@ fn test_lines(tests: &Tests, actuators: &ActuatorsNode) -> Vec<String> {
     };
     let packings = match tests.packings {
         0 | 1 => "one packing".to_owned(),
+        most if tests.least > 0 && tests.least < most => format!("each of {} to {most} packings", tests.least),
         several => format!("each of {several} packings"),
     };
     let kept: Vec<String> = tests.kept.iter().map(u64::to_string).collect();
@@ -399,7 +400,7 @@ fn cost_lines(cost: &Cost) -> String {
             number((cost.seconds_on_two_cores * 10.0).round() / 10.0),
             cost.bytes.div_ceil(1_000_000)
         ),
-        Work::Tests(TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings }) => format!(
+        Work::Tests(work @ TestWork { grains, pebbles, time_step, packing_steps, test_steps, .. }) => format!(
             "\nestimate: about {} grains of {} pebbles in all, step {} us\n\
              estimate: about {} steps to pack the bed, {} to test it{}\n\
              estimate: about {} on two cores, within a factor of two, {} MB\n",
@@ -408,11 +409,30 @@ fn cost_lines(cost: &Cost) -> String {
             number((time_step * 1e7).round() / 10.0),
             rounded(packing_steps),
             rounded(test_steps),
-            if packings > 1 { format!(", {packings} times") } else { String::new() },
-            duration(cost.seconds_on_two_cores),
+            times(work),
+            took(cost, work),
             rounded(cost.bytes as f64 / 1e6)
         ),
     }
+}
+
+/// `, 5 times`, `, 3 to 12 times`; nothing for one packing.
+fn times(TestWork { packings, least_packings, .. }: TestWork) -> String {
+    match packings {
+        0 | 1 => String::new(),
+        most if least_packings < most && least_packings > 0 => format!(", {least_packings} to {most} times"),
+        most => format!(", {most} times"),
+    }
+}
+
+/// `18 min`, `55 min to 3.7 h`
+fn took(cost: &Cost, TestWork { packings, least_packings, .. }: TestWork) -> String {
+    let longest = cost.seconds_on_two_cores;
+    if least_packings == 0 || least_packings >= packings {
+        return duration(longest);
+    }
+    let shortest = longest * f64::from(least_packings) / f64::from(packings);
+    format!("{} to {}", duration(shortest), duration(longest))
 }
 
 impl Listing {

@@ -148,7 +148,7 @@ impl Graph {
     #[must_use]
     pub fn with_one_packing(mut self, place: u32) -> Graph {
         if let Schedule::Actuators(tests) = &mut self.schedule {
-            (tests.first, tests.packings) = (tests.first + place, 1);
+            (tests.first, tests.packings, tests.least) = (tests.first + place, 1, 1);
         }
         self
     }

@@ -51,8 +51,11 @@ pub struct Tests {
     /// The seed of the first packing minus the seed of the bed.
     #[serde(default)]
     pub first: u32,
-    /// Number of packings; their seeds are consecutive.
+    /// Number of packings at most; their seeds are consecutive.
     pub packings: u32,
+    /// Number of packings at least: a listener ends an open range where it has enough.
+    #[serde(default)]
+    pub least: u32,
     /// Cycles whose loops of force and depth and sensor readings are kept; the first cycle is 1.
     pub kept: Vec<u64>,
 }

@@ -1,7 +1,8 @@
 //! Scatter from packing to packing: a table of the page.
 
 use super::number::plain;
-use crate::results::Run;
+use crate::results::{Mean, Run};
+use crate::units::number;
 use std::fmt::Write;
 
 /// Scalars of the table: name, label, unit, and the size of the unit in SI.
@@ -26,12 +27,14 @@ pub fn packings(html: &mut String, run: &Run) {
     let _ = write!(
         html,
         "<section id=\"packings\"><h2>Over packings</h2><p class=\"caption\">The same scene with {} packings of its \
-         grains. This page shows seed {}; thin curves show seed {}. The standard deviation is for one packing, and the interval of 95 % for the mean.</p><div \
-         class=\"scroll\"><table><tr><th class=\"text\"></th><th></th><th>this packing</th><th>mean</th><th>\u{b1} 95 %</th><th>standard \
+         grains. This page shows seed {}; thin curves show seed {}. The standard deviation is for one packing, the 95 % \
+         interval for the mean.{}</p><div class=\"scroll\"><table><tr><th class=\"text\"></th><th></th><th>this \
+         packing</th><th>mean</th><th>\u{b1} 95 %</th><th>standard \
          deviation</th><th>least</th><th>largest</th></tr>",
         run.packings.len() + 1,
         run.scenario.solve.seed,
-        seeds.join(", ")
+        seeds.join(", "),
+        enough(run)
     );
     for (name, label, unit, size) in ROWS {
         let (Some(scatter), Some(own)) = (run.scatter(name), run.scalar(name)) else { continue };
@@ -42,6 +45,23 @@ pub fn packings(html: &mut String, run: &Run) {
         *html += "</tr>";
     }
     *html += "</table></div></section>\n";
+}
+
+/// Whether an open range of packings was enough; nothing for a number.
+fn enough(run: &Run) -> String {
+    let grains = &run.scenario.solve.grains;
+    if !grains.repeats.are_open() {
+        return String::new();
+    }
+    let tolerance = number(*grains.tolerance * 100.0);
+    let goal = format!(
+        "the mean of the largest settlement and of the step at the structure to within {tolerance} % of the largest \
+         settlement"
+    );
+    match Mean::of(&run.summary.scalars, &run.packings).is_enough(grains) {
+        true => format!(" Of {} packings these give {goal}.", grains.repeats),
+        false => format!(" Even these {} packings do not give {goal}.", run.packings.len() + 1),
+    }
 }
 
 /// A caption with a note on the thin curves, if there are any.

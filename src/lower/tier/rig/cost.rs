@@ -5,7 +5,7 @@ use super::{cycles, loads, period, rest_time};
 use crate::graph::{BedNode, BlockWeight, Blocks, Cost, Passing, TestWork, Work};
 use crate::lower::bed::{confinement, width};
 use crate::lower::{Draft, crib};
-use crate::scenario::{Contact, Granular, Scenario, Section, Shape};
+use crate::scenario::{Contact, Granular, Repeats, Scenario, Section, Shape};
 use crate::solvers::granular::grains::Curve;
 use crate::solvers::granular::packing::lifts_that_fit;
 use crate::solvers::granular::rig::SOLID as POURED;
@@ -91,14 +91,14 @@ pub(super) fn of_rig(scenario: &Scenario, bed: Option<&BedNode>) -> Cost {
     let loads = loads(scenario);
     let pouring = if bed.crib.is_some() { POURING } else { 0.0 };
     let test_steps = (SET_DOWN + pouring + (0.5 + cycles(&loads) as f64) * period(&loads, rest)) / step;
-    let packings = scenario.solve.grains.repeats.most;
+    let Repeats { least: least_packings, most: packings } = scenario.solve.grains.repeats;
     // during packing half of the bed is present on average
     let [packing, testing] = [0.5 * packing_steps, copies * test_steps];
     let steps_beside = beside_pebbles * test_steps / PEBBLE_STEPS[1];
     let seconds =
         f64::from(packings) * (pebbles * (packing / PEBBLE_STEPS[0] + testing / PEBBLE_STEPS[1]) + steps_beside);
     let (grains, pebbles) = (copies * grains + beside_grains, copies * pebbles + beside_pebbles);
-    let work = TestWork { grains, pebbles, time_step: step, packing_steps, test_steps, packings };
+    let work = TestWork { grains, pebbles, time_step: step, packing_steps, test_steps, packings, least_packings };
     cost(seconds, work)
 }
 
@@ -138,8 +138,8 @@ pub(in crate::lower::tier) fn grains_under_track(draft: &Draft<'_>, blocks: Opti
     let time = building + blocks.map_or(0.0, |blocks| passing.between(blocks, 0, blocks.total));
     let test_steps = time / time_step;
     let seconds = 0.5 * cell * packing_steps / PEBBLE_STEPS[0] + pebbles * test_steps / TRACK_PEBBLE_STEPS;
-    let packings = scenario.solve.grains.repeats.most;
-    let work = TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings };
+    let Repeats { least: least_packings, most: packings } = scenario.solve.grains.repeats;
+    let work = TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings, least_packings };
     cost(f64::from(packings) * seconds, work)
 }
 
@@ -185,8 +185,8 @@ pub(in crate::lower::tier) fn cells_under_track(draft: &Draft<'_>, blocks: &Bloc
     let [cell_grains, cell_pebbles] = [grains + beside_grains, pebbles + beside_pebbles];
     let seconds = 0.5 * pebbles * packing_steps / PEBBLE_STEPS[0] + cell_pebbles * test_steps / TRACK_PEBBLE_STEPS;
     let [grains, pebbles] = [cell_grains, cell_pebbles].map(|count| passing.bays * count);
-    let packings = scenario.solve.grains.repeats.most;
-    let work = TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings };
+    let Repeats { least: least_packings, most: packings } = scenario.solve.grains.repeats;
+    let work = TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings, least_packings };
     cost(f64::from(packings) * seconds, work)
 }
 

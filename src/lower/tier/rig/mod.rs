@@ -10,7 +10,9 @@ use crate::graph::{
 use crate::lower::bed::{self, BedUse, beds, confinement};
 use crate::lower::blocks::COUNTS;
 use crate::lower::{Draft, crib, glue};
-use crate::scenario::{Foot, Force, Given, Loading, RigLoad, Scenario, Seat, Section, SleeperBody, Target, Volume};
+use crate::scenario::{
+    Foot, Force, Given, Loading, Repeats, RigLoad, Scenario, Seat, Section, SleeperBody, Target, Volume,
+};
 use crate::schema::Reads;
 use crate::solvers::granular::packing::{GrainLayer, Recipe};
 use crate::solvers::granular::rig::{ADDED, Load};
@@ -63,7 +65,8 @@ impl Tier for TestRig {
         let bed = nodes.iter().find_map(|node| if let Model::Bed(bed) = &node.model { Some(&**bed) } else { None });
         let cost = cost::of_rig(scenario, bed);
         let kept = kept(scenario, cycles(&loads(scenario)));
-        let tests = Tests { first: 0, packings: scenario.solve.grains.repeats.most, kept };
+        let Repeats { least, most: packings } = scenario.solve.grains.repeats;
+        let tests = Tests { first: 0, packings, least, kept };
         Ok(Proposal {
             edges: edges(&nodes),
             nodes,
