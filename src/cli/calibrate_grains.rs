@@ -235,10 +235,17 @@ fn told(found: &[Found], scene: &SceneArguments, asked: &GrainArguments, format:
 fn used(found: &[Found], out: &Path) -> String {
     let stem = out.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let name = found.first().map_or("", |found| found.name.as_str());
-    format!(
+    let mut text = format!(
         "written to {}; a scene beside it uses it: `use {stem}`, `solve {{ substructure = law, law = {stem}.{name} }}`\n",
         out.display()
-    )
+    );
+    for other in found.iter().skip(1) {
+        text += &format!(
+            "the trackform or stretch of sleeper {} takes its own: `law = {stem}.{}`\n",
+            other.place, other.name
+        );
+    }
+    text
 }
 
 impl Found {

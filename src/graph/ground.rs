@@ -16,6 +16,25 @@ pub struct LawNode {
     pub supports: Vec<SupportNode>,
     pub law: NamedLaw,
     pub followers: Vec<NamedLaw>,
+    /// Laws of some sleepers in place of `law`, each in [`SupportNode::law`] too.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub own: Vec<OwnLaw>,
+}
+
+/// A law of some sleepers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OwnLaw {
+    pub law: NamedLaw,
+    /// Indices of their seats, ascending.
+    pub seats: Vec<usize>,
+}
+
+impl LawNode {
+    /// The law that settles a seat.
+    pub fn of_seat(&self, seat: usize) -> &NamedLaw {
+        let own = self.own.iter().find(|own| own.seats.binary_search(&seat).is_ok());
+        own.map_or(&self.law, |own| &own.law)
+    }
 }
 
 /// The support under one seat.
@@ -31,6 +50,9 @@ pub struct SupportNode {
     /// Vertical pressure on the lowest layer per newton of contact force, 1/m^2; `None` if the layers or their moduli
     /// are not known.
     pub onto_subgrade: Option<f64>,
+    /// The law by which it settles; `None` for the law of the scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<Law>,
 }
 
 /// A settlement law with its name in the scene.

@@ -107,8 +107,12 @@ fn of_track(track: &TrackNode) -> Vec<String> {
 }
 
 fn of_law(node: &LawNode) -> Vec<String> {
+    let own = node.own.iter().map(|own| {
+        let sleepers = if own.seats.len() == 1 { "sleeper" } else { "sleepers" };
+        format!("{} under {} {sleepers}: {}", own.law.name, own.seats.len(), own.law.details)
+    });
     let beside = node.followers.iter().map(|law| format!("also evaluated: {}, {}", law.name, law.details));
-    std::iter::once(node.law.details.clone()).chain(beside).collect()
+    std::iter::once(node.law.details.clone()).chain(own).chain(beside).collect()
 }
 
 fn standing(bed: &BedNode) -> String {

@@ -28,7 +28,7 @@ pub use grains::{
     ActuatorsNode, BedError, BedNode, BedPlan, BedRecipe, GrainStretch, GrainsNode, SensorNode, SensorVolume,
     SleeperOnGrains, SoilBlock, SoilLayer, SoilNode, StandingBody, StiffnessFrom, VolumeUnderTrack,
 };
-pub use ground::{LawBounds, LawNode, NamedLaw, SpringsNode, SupportNode};
+pub use ground::{LawBounds, LawNode, NamedLaw, OwnLaw, SpringsNode, SupportNode};
 pub use listing::Listing;
 pub use node::{CustomNode, Model, Node};
 pub use passing::{BlockWeight, Passing};

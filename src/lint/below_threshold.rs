@@ -4,10 +4,10 @@
 
 use super::led;
 use super::winkler::seat_loads;
-use super::{laws, pointed};
+use super::{acts_in, laws, pointed};
 use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, SettlementLaw};
 use crate::units::number;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
@@ -16,12 +16,15 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         return Vec::new();
     }
     let seats = seat_loads(scenario, graph, traffic);
-    let Some(most) = seats.iter().max_by(|a, b| a.peak.force.total_cmp(&b.peak.force)) else { return Vec::new() };
-    let below = laws(scenario).filter_map(|law| Some((law, law.law.threshold()?)));
+    let most = |law: &SettlementLaw| {
+        let here = seats.iter().filter(|seat| acts_in(scenario, law, seat.section));
+        here.max_by(|a, b| a.peak.force.total_cmp(&b.peak.force))
+    };
+    let below = laws(scenario).filter_map(|law| Some((law, law.law.threshold()?, most(law)?)));
     let kilonewtons = |force: f64| number((force / 1e2).round() / 10.0);
     below
-        .filter(|(_, threshold)| most.peak.force <= *threshold)
-        .map(|(law, threshold)| {
+        .filter(|(_, threshold, most)| most.peak.force <= *threshold)
+        .map(|(law, threshold, most)| {
             let diagnostic = Diagnostic::new(
                 Code::L1008,
                 format!(

@@ -2,7 +2,7 @@
 
 use super::led;
 use super::winkler::{SeatLoad, seat_loads};
-use super::{laws, pointed};
+use super::{acts_in, laws, pointed};
 use crate::diag::{Code, Diagnostic, Severity};
 use crate::graph::Graph;
 use crate::scenario::{Scenario, SettlementLaw};
@@ -15,7 +15,8 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     }
     let seats = seat_loads(scenario, graph, traffic);
     let of_law = |law| {
-        let loads = seats.iter().filter_map(move |seat| beyond_loads(scenario, law, seat));
+        let loads = seats.iter().filter(|seat| acts_in(scenario, law, seat.section));
+        let loads = loads.filter_map(|seat| beyond_loads(scenario, law, seat)).collect::<Vec<_>>();
         beyond_cycles(scenario, law, traffic.blocks.total).into_iter().chain(loads)
     };
     laws(scenario).flat_map(of_law).collect()

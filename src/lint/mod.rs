@@ -157,9 +157,15 @@ fn led_by_each<'a>(scenario: &'a Scenario, graph: &'a Graph) -> Vec<(Cow<'a, Sce
     views
 }
 
-/// The law that drives the run, then the laws beside it.
+/// The laws that settle sleepers, then the laws that are evaluated beside them.
 fn laws(scenario: &Scenario) -> impl Iterator<Item = &SettlementLaw> {
-    std::iter::once(&scenario.solve.law).chain(&scenario.solve.other_laws)
+    scenario.driving_laws().into_iter().chain(&scenario.solve.other_laws)
+}
+
+/// Whether a law settles sleepers of a section, or is evaluated beside.
+fn acts_in(scenario: &Scenario, law: &SettlementLaw, section: usize) -> bool {
+    let mut here = scenario.driving_laws_of(section).into_iter().chain(&scenario.solve.other_laws);
+    here.any(|other| other.name == law.name && other.law == law.law)
 }
 
 /// Points at the place in the scene that asks for a law; if the law is the default, at the traffic.

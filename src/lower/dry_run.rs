@@ -2,7 +2,7 @@
 //! beside each transition on its supports, under standing wheels over one seat after the other. Dynamic effects are
 //! only a factor on the wheel force.
 
-use crate::graph::{Block, Blocks, Bogie, Control, Responses, Runner, SupportNode, TrackNode, Train};
+use crate::graph::{Block, Blocks, Bogie, Control, Responses, Runner, SupportNode, TrackNode, TrackSeat, Train};
 use crate::solvers::settlement::{Law, Peak, SupportState};
 use crate::solvers::track::{Track, forces_under_wheels};
 
@@ -33,8 +33,9 @@ struct Stretch {
     responses: Responses,
     /// Settlement of its seats at the start, m.
     initial: Vec<f64>,
-    /// Indices of the seats that settle.
+    /// Indices of the seats that settle, and their own laws.
     seats: Vec<usize>,
+    laws: Vec<Option<Law>>,
     /// For each kind of train: its different bogies, and the number of vehicles with them.
     wheels: Vec<Vec<(Bogie, u64)>>,
 }
@@ -87,17 +88,17 @@ impl<'a> DryRun<'a> {
         blocks: &'a Blocks,
         (tolerance, cap): (f64, Option<f64>),
     ) -> Self {
-        let mut known: Vec<Vec<[f64; 4]>> = Vec::new();
+        let mut known: Vec<Vec<Likeness>> = Vec::new();
         let mut new = |range: &[usize; 2]| {
             let likeness = likeness(track, supports, *range);
-            let mirrored: Vec<[f64; 4]> = likeness.iter().rev().copied().collect();
+            let mirrored: Vec<Likeness> = likeness.iter().rev().copied().collect();
             let is_new = !known.contains(&likeness) && !known.contains(&mirrored);
             known.push(likeness);
             is_new
         };
         let ranges = beside_transitions(track).into_iter().filter(|range| new(range)).take(STRETCHES);
         let stretches: Vec<Stretch> = ranges.filter_map(|range| Stretch::new(track, supports, blocks, range)).collect();
-        let states = stretches.iter().map(|stretch| vec![law.fresh(); stretch.seats.len()]).collect();
+        let states = stretches.iter().map(|stretch| stretch.fresh(law)).collect();
         DryRun { blocks, tolerance, cap, stretches, states, control: Control::default(), error: 0.0 }
     }
 
@@ -108,7 +109,7 @@ impl<'a> DryRun<'a> {
 
     /// Starts the settlement law of every seat again.
     pub fn tamp(&mut self, law: &Law) {
-        self.states.iter_mut().flatten().for_each(|state| *state = law.fresh());
+        self.states = self.stretches.iter().map(|stretch| stretch.fresh(law)).collect();
     }
 
     /// The next block, chosen as in the adaptive step of a run; `middle` receives the passages of every attempt.
@@ -192,17 +193,23 @@ impl<'a> DryRun<'a> {
 }
 
 impl Stretch {
+    /// Supports that nothing has loaded, each under its own law or under that of the scene.
+    fn fresh(&self, law: &Law) -> Vec<SupportState> {
+        self.laws.iter().map(|own| own.as_ref().unwrap_or(law).fresh()).collect()
+    }
+
     fn new(track: &TrackNode, supports: &[SupportNode], blocks: &Blocks, [first, last]: [usize; 2]) -> Option<Stretch> {
         let node = track.part(first, last)?;
         let supports = supports.get(first..=last)?;
         let responses = Responses { revision: 0, seats: supports.iter().map(|support| support.spring).collect() };
-        let seats = (0..supports.len()).filter(|seat| supports[*seat].spring.is_some()).collect();
+        let seats: Vec<usize> = (0..supports.len()).filter(|seat| supports[*seat].spring.is_some()).collect();
+        let laws = seats.iter().map(|seat| supports[*seat].law).collect();
         let initial = supports.iter().map(|support| support.settlement).collect();
         let vehicles = |bogie: &Bogie| bogie.wheels_of_train.len() as u64 / 4;
         let of_train =
             |train: &Train| train.bogies(node.gravity).into_iter().map(|b| (b.clone(), vehicles(&b))).collect();
         let wheels = blocks.kinds().map(|(train, _)| of_train(train)).collect();
-        Some(Stretch { track: Track::new(node.model(&responses)).ok()?, node, responses, initial, seats, wheels })
+        Some(Stretch { track: Track::new(node.model(&responses)).ok()?, node, responses, initial, seats, laws, wheels })
     }
 
     /// The largest force of a wheel on each support; 0 if the track has no equilibrium, which the run reports as an
@@ -254,9 +261,14 @@ fn beside_transitions(track: &TrackNode) -> Vec<[usize; 2]> {
     }
 }
 
-/// Data by which stretches are compared: bays, pad stiffness, support stiffness and settlement of each seat.
-fn likeness(track: &TrackNode, supports: &[SupportNode], [first, last]: [usize; 2]) -> Vec<[f64; 4]> {
+/// Data by which stretches are compared: bay, pad stiffness, support stiffness and settlement of a seat, and its own law.
+type Likeness = ([f64; 4], Option<Law>);
+
+fn likeness(track: &TrackNode, supports: &[SupportNode], [first, last]: [usize; 2]) -> Vec<Likeness> {
     let seats = track.seats[first..=last].iter().zip(&supports[first..=last]);
     let of = |support: &SupportNode| support.spring.map_or(0.0, |spring| spring.stiffness);
-    seats.map(|(seat, support)| [seat.bay, seat.pad_stiffness, of(support), support.settlement]).collect()
+    let numbers = |(seat, support): (&TrackSeat, &SupportNode)| {
+        ([seat.bay, seat.pad_stiffness, of(support), support.settlement], support.law)
+    };
+    seats.map(numbers).collect()
 }

@@ -97,6 +97,7 @@ fn nodes(track: &Track, carried: &OfSeats) -> Vec<SupportNode> {
             support: support.as_ref().map(|support| support.below(None)),
             settlement: *seat.initial_settlement,
             onto_subgrade: carried.map(|carried| carried.onto_subgrade),
+            law: seat.own_law().map(|own| own.law),
         }
     };
     track.seats.iter().zip(carried).map(node).collect()

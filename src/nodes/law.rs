@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 
 /// Springs with laws that settle them; without a law nothing settles.
 pub struct LawGround<'a> {
-    /// The driving one first.
-    laws: Vec<&'a Law>,
-    /// Name and bounds of the driving law, if it has bounds.
-    bounded: Option<(&'a str, LawBounds)>,
+    /// The driving one first, then those beside it: of every seat that settles.
+    laws: Vec<Vec<&'a Law>>,
+    /// Name and bounds of the driving law of every seat that settles, if it has bounds.
+    bounded: Vec<Option<(&'a str, LawBounds)>>,
     /// Indices of the seats that settle.
     seats: Vec<usize>,
     /// Settlement of every seat at the start, m.
@@ -35,20 +35,23 @@ impl<'a> LawGround<'a> {
 
     /// Supports under laws, as the scene starts them.
     pub fn law(node: &'a LawNode) -> LawGround<'a> {
-        let laws = std::iter::once(&node.law).chain(&node.followers).map(|named: &NamedLaw| &named.law).collect();
-        let bounded = node.law.bounds.map(|bounds| (node.law.name.as_str(), bounds));
+        let seats = settling(&node.supports);
+        let driving: Vec<&NamedLaw> = seats.iter().map(|seat| node.of_seat(*seat)).collect();
+        let beside = node.followers.iter().map(|named| vec![&named.law; seats.len()]);
+        let laws = std::iter::once(driving.iter().map(|named| &named.law).collect()).chain(beside).collect();
+        let bounded = driving.iter().map(|named| named.bounds.map(|bounds| (named.name.as_str(), bounds))).collect();
         LawGround { bounded, ..LawGround::new(&node.supports, laws) }
     }
 
-    fn new(supports: &[SupportNode], laws: Vec<&'a Law>) -> LawGround<'a> {
-        let seats: Vec<usize> = (0..supports.len()).filter(|seat| supports[*seat].spring.is_some()).collect();
+    fn new(supports: &[SupportNode], laws: Vec<Vec<&'a Law>>) -> LawGround<'a> {
+        let seats = settling(supports);
         let initial: Vec<f64> = supports.iter().map(|support| support.settlement).collect();
         let state = State {
-            supports: laws.iter().map(|law| seats.iter().map(|_| law.fresh()).collect()).collect(),
+            supports: laws.iter().map(|laws| laws.iter().map(|law| law.fresh()).collect()).collect(),
             level: vec![initial.clone(); laws.len()],
         };
         let responses = Responses { revision: 0, seats: supports.iter().map(|support| support.spring).collect() };
-        LawGround { laws, bounded: None, seats, initial, responses, state }
+        LawGround { laws, bounded: Vec::new(), seats, initial, responses, state }
     }
 
     fn settlements(&self, state: &State) -> Vec<Vec<f64>> {
@@ -65,15 +68,17 @@ impl<'a> LawGround<'a> {
 
     /// Fails if a wheel loads a support beyond the bounds of the law.
     fn within_bounds(&self, loads: &[Load<'_>]) -> Result<(), NodeError> {
-        let Some((law, bounds)) = self.bounded else { return Ok(()) };
-        let beyond = |peak: &Peak| peak.force > bounds.force || peak.void > bounds.void;
-        let at_seat = |load: &Load<'_>, seat: usize| load.peaks()[seat].iter().copied().find(beyond);
-        let found =
-            loads.iter().find_map(|load| self.seats.iter().find_map(|seat| Some((*seat, at_seat(load, *seat)?))));
-        found.map_or(Ok(()), |(seat, peak)| {
-            let found = LawBounds { force: peak.force, void: peak.void };
-            Err(NodeError::BeyondLaw { law: law.to_owned(), seat, found, bounds })
-        })
+        for load in loads {
+            for (seat, bounded) in self.seats.iter().zip(&self.bounded) {
+                let Some((law, bounds)) = *bounded else { continue };
+                let beyond = |peak: &&Peak| peak.force > bounds.force || peak.void > bounds.void;
+                if let Some(peak) = load.peaks()[*seat].iter().find(beyond) {
+                    let found = LawBounds { force: peak.force, void: peak.void };
+                    return Err(NodeError::BeyondLaw { law: law.to_owned(), seat: *seat, found, bounds });
+                }
+            }
+        }
+        Ok(())
     }
 
     fn load(&self, state: &mut State, laws: usize, loads: &[Load<'_>]) {
@@ -136,9 +141,9 @@ impl Substructure for LawGround<'_> {
     fn tamp(&mut self, seats: &[usize], left: f64) -> Result<(), NodeError> {
         let settled = self.settlements(&self.state);
         let State { supports, level } = &mut self.state;
-        for (((law, supports), level), settled) in self.laws.iter().zip(supports).zip(level).zip(settled) {
-            let tamped = self.seats.iter().zip(supports).filter(|(seat, _)| seats.binary_search(seat).is_ok());
-            for (seat, support) in tamped {
+        for (((laws, supports), level), settled) in self.laws.iter().zip(supports).zip(level).zip(settled) {
+            let all = self.seats.iter().zip(laws).zip(supports);
+            for ((seat, law), support) in all.filter(|((seat, _), _)| seats.binary_search(seat).is_ok()) {
                 level[*seat] = left * settled[*seat];
                 *support = law.fresh();
             }
@@ -157,7 +162,7 @@ impl Substructure for LawGround<'_> {
             && state.level.len() == laws
             && state.supports.iter().all(|supports| supports.len() == self.seats.len())
             && state.level.iter().all(|level| level.len() == self.initial.len())
-            && self.laws.iter().zip(&state.supports).all(|(law, s)| s.iter().all(|support| support.law() == **law));
+            && self.laws.iter().flatten().zip(state.supports.iter().flatten()).all(|(law, s)| s.law() == **law);
         if !fits {
             return Err(foreign("it holds other laws or another number of seats"));
         }
@@ -168,6 +173,11 @@ impl Substructure for LawGround<'_> {
         self.state = state;
         Ok(())
     }
+}
+
+/// Indices of the seats that settle.
+fn settling(supports: &[SupportNode]) -> Vec<usize> {
+    (0..supports.len()).filter(|seat| supports[*seat].spring.is_some()).collect()
 }
 
 fn foreign(why: impl ToString) -> NodeError {

@@ -137,14 +137,14 @@ fn step_place(run: &Run) -> String {
     let named = run.scenario.track.transitions.iter().map(|transition| &transition.name);
     let of_name = |name: &&String| scalar(run, &format!("settlement_step_{name}")) == Some(step);
     let at = named.filter(|name| !name.is_empty()).find(of_name).map_or(String::new(), |name| format!(", at {name}"));
-    let law = &run.scenario.solve.law;
-    let why = match step < 0.0 && law.law.knows_forces_alone() {
-        true => format!(
+    let laws = run.scenario.driving_laws();
+    let why = match laws.first().filter(|law| step < 0.0 && law.law.knows_forces_alone()) {
+        Some(law) => format!(
             ": law {} uses only the forces on the ballast, which are larger there; it does not model the \
             subgrade",
             law.name
         ),
-        false => String::new(),
+        None => String::new(),
     };
     format!("{lower}{at}{why}")
 }

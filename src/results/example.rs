@@ -100,7 +100,7 @@ pub(crate) fn transition() -> Run {
         foundation_damping: given(1e5),
     };
     let support = Support { stiffness: given(40e6), damping: given(4e4), seating: None };
-    let ballast = Foot::Sleeper { mass: given(150.0), support: Some(support), usp: None };
+    let ballast = Foot::Sleeper { mass: given(150.0), support: Some(support), usp: None, law: None };
     let seat = |number: i32| Seat {
         number,
         transition: 0,

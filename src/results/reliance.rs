@@ -169,7 +169,8 @@ const RISEN: f64 = 1e-6;
 
 /// Spread between the laws of the scene, and the laws that are used outside their calibration.
 fn spread_of_laws(scenario: &Scenario, warnings: &[Warned], scalars: &BTreeMap<String, Scalar>) -> String {
-    let laws: Vec<&SettlementLaw> = std::iter::once(&scenario.solve.law).chain(&scenario.solve.other_laws).collect();
+    let driving = scenario.driving_laws();
+    let laws: Vec<&SettlementLaw> = driving.iter().copied().chain(&scenario.solve.other_laws).collect();
     let beyond = |law: &&&SettlementLaw| {
         let named = format!("law `{}`", law.name);
         warnings.iter().any(|warned| warned.code == Code::L1004.as_str() && warned.message.starts_with(&named))
@@ -196,6 +197,11 @@ fn spread_of_laws(scenario: &Scenario, warnings: &[Warned], scalars: &BTreeMap<S
             millimetres(most.0),
             most.1
         ),
+        _ if driving.len() > 1 => format!(
+            "settlement is computed by {} laws, each under its own sleepers: {}{outside}",
+            driving.len(),
+            and_list(&driving.iter().map(|law| format!("`{}`", law.name)).collect::<Vec<_>>())
+        ),
         _ => format!(
             "settlement is computed by one law, `{}`, and published laws differ by a factor of ten and more{outside}: \
              use it to compare designs, and name several laws to see the spread",
@@ -208,11 +214,19 @@ fn assumptions(scenario: &Scenario, graph: &Graph, tables: &RunTables) -> Vec<St
     let mut told = Vec::new();
     let traffic = matches!(scenario.loading, Some(Loading::Traffic(_)));
     if graph.laws().next().is_some() {
-        let law = &scenario.solve.law;
-        let by = if law.law.knows_forces_alone() { "force" } else { "deflection" };
+        let laws = scenario.driving_laws();
+        let named: Vec<String> = laws.iter().map(|law| format!("`{}`", law.name)).collect();
+        let by = match laws.iter().filter(|law| law.law.knows_forces_alone()).count() {
+            0 => "deflection",
+            n if n == laws.len() => "force",
+            _ => "force or deflection",
+        };
+        let which = match named.as_slice() {
+            [only] => format!("law {only}"),
+            several => format!("one of the laws {}", and_list(several)),
+        };
         told.push(format!(
-            "each sleeper settles by law `{}`, from the {by} on its own ballast; the subgrade does not settle",
-            law.name
+            "each sleeper settles by {which}, from the {by} on its own ballast; the subgrade does not settle"
         ));
     }
     told.extend(supports(graph));

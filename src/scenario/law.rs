@@ -1,6 +1,6 @@
 //! The settlement law of the supports.
 
-use super::Origin;
+use super::{Origin, Scenario, Seat};
 use crate::schema;
 use crate::solvers::settlement::{Form, Law, Logarithm};
 use crate::units::{number, parse_unit};
@@ -22,6 +22,32 @@ pub struct SettlementLaw {
     pub error: Option<f64>,
     /// Place in the text that names the law.
     pub origin: Origin,
+}
+
+impl Scenario {
+    /// The laws that settle sleepers, each once: that of `solve` first, if some sleeper has none of its own.
+    pub fn driving_laws(&self) -> Vec<&SettlementLaw> {
+        self.laws_of(&self.track.seats)
+    }
+
+    /// The laws that settle sleepers of a section.
+    pub fn driving_laws_of(&self, section: usize) -> Vec<&SettlementLaw> {
+        self.laws_of(&self.track.seats[self.track.seats_of(section)])
+    }
+
+    fn laws_of<'a>(&'a self, seats: &'a [Seat]) -> Vec<&'a SettlementLaw> {
+        let mut laws: Vec<&SettlementLaw> = Vec::new();
+        let ballasted = || seats.iter().filter(|seat| seat.is_ballasted());
+        if ballasted().next().is_none() || ballasted().any(|seat| seat.own_law().is_none()) {
+            laws.push(&self.solve.law);
+        }
+        for own in ballasted().filter_map(Seat::own_law) {
+            if !laws.iter().any(|law| (&law.name, law.law) == (&own.name, own.law)) {
+                laws.push(own);
+            }
+        }
+        laws
+    }
 }
 
 /// An argument of a law in the notation of the language, from its SI value: `35 kN per seat`, `0.11 mm^-1`.

@@ -1,6 +1,6 @@
 //! The track at rest: sections, the transitions between them, and every rail seat.
 
-use super::{Bed, Given, Layer, Origin, Profile};
+use super::{Bed, Given, Layer, Origin, Profile, SettlementLaw};
 use crate::diag::Span;
 use crate::solvers::foundation;
 use crate::solvers::track::{Spring, UnderPad};
@@ -392,6 +392,9 @@ pub enum Foot {
         support: Option<Support>,
         /// Under sleeper pad in series with the support.
         usp: Option<Usp>,
+        /// The law by which it settles; `None` for the law of `solve`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        law: Option<Box<SettlementLaw>>,
     },
     /// A seat that does not move.
     Rigid,
@@ -488,6 +491,11 @@ impl Seat {
     }
 
     /// The under sleeper pad of its sleeper.
+    /// The law by which the sleeper settles, if it has one of its own.
+    pub fn own_law(&self) -> Option<&SettlementLaw> {
+        if let Foot::Sleeper { law, .. } = &self.foot { law.as_deref() } else { None }
+    }
+
     pub fn usp(&self) -> Option<&Usp> {
         if let Foot::Sleeper { usp, .. } = &self.foot { usp.as_ref() } else { None }
     }

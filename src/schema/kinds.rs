@@ -58,6 +58,7 @@ const RAIL_OR_TRACK: Basis = Basis { names: &[("rail", 1.0), ("track", 0.5)], as
 
 const AUTO: &[Word] = &[word("auto", "chosen by the planner")];
 const USP: Form = Form::OneOf(&[Form::Object("usp"), Form::Words(NONE)]);
+const LAW: Form = Form::OneOf(&[Form::Object("law"), Form::Words(NONE)]);
 const SEATING: Form = Form::OneOf(&[Form::Object("seating"), Form::Words(NONE)]);
 const AUXILIARY_RAILS: Form = Form::OneOf(&[Form::Object("auxiliary_rails"), Form::Words(NONE)]);
 const APPROACH_SLAB: Form = Form::OneOf(&[Form::Object("approach_slab"), Form::Words(NONE)]);
@@ -297,6 +298,7 @@ pub const KINDS: &[Kind] = &[
             optional("pad", PAD, "the rail pads"),
             optional("sleeper", SLEEPER, "the sleepers; a slab has none"),
             optional("usp", USP, "pad under each sleeper, in series with the support"),
+            optional("law", LAW, "law by which these sleepers settle; without it the law of `solve`"),
             required(
                 "spacing",
                 along(number("m", 0.3, 1.2)),

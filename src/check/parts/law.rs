@@ -43,7 +43,8 @@ pub fn laws(slot: &Slot, findings: &mut Findings) -> Option<(SettlementLaw, Vec<
     laws.pop().filter(|_| sound).map(|law| (law, others))
 }
 
-fn settlement_law(slot: &Slot, findings: &mut Findings) -> Option<SettlementLaw> {
+/// One law.
+pub fn settlement_law(slot: &Slot, findings: &mut Findings) -> Option<SettlementLaw> {
     let Val::Record(record) = &slot.value else { return None };
     let Val::Word { word, arguments } = &record.get("form")?.value else { return None };
     let cycle_per = match record.word("cycle_per")? {

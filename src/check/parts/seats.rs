@@ -10,14 +10,20 @@ use crate::check::places::along::{Laid, lay};
 use crate::check::places::chainage::Places;
 use crate::check::places::cover::Cover;
 use crate::diag::{Code, Diagnostic};
-use crate::scenario::{Foot, Given, Origin, Seat, Seating, Support, Usp};
+use crate::scenario::{Foot, Given, Origin, Seat, Seating, SettlementLaw, Support, Usp};
 use crate::schema;
 use crate::units::number;
 use std::ops::Range;
 
 /// A [`Base`] laid along the track.
 enum LaidFoot<'a> {
-    Sleeper { mass: Given, support: LaidSupport<'a>, seating: Option<Seating>, usp: Option<(&'a Cushion, Laid)> },
+    Sleeper {
+        mass: Given,
+        support: LaidSupport<'a>,
+        seating: Option<Seating>,
+        usp: Option<(&'a Cushion, Laid)>,
+        law: Option<&'a SettlementLaw>,
+    },
     Fixed(Foot),
 }
 
@@ -69,7 +75,7 @@ pub fn lay_seats(
             None => None,
         };
         let foot = match &foot {
-            LaidFoot::Sleeper { mass, support, seating, usp } => {
+            LaidFoot::Sleeper { mass, support, seating, usp, law } => {
                 let support = match support {
                     LaidSupport::Stated(spring) => {
                         let (stiffness, damping) = spring_at(spring, x, findings)?;
@@ -78,7 +84,7 @@ pub fn lay_seats(
                     LaidSupport::OfLayers => None,
                 };
                 let usp = usp.as_ref().map(|(usp, modulus)| usp.pad_at(modulus, x));
-                Foot::Sleeper { mass: *mass, support, usp }
+                Foot::Sleeper { mass: *mass, support, usp, law: law.map(|law| Box::new(law.clone())) }
             }
             LaidFoot::Fixed(foot) => foot.clone(),
         };
@@ -116,8 +122,9 @@ fn lay_bed<'a>(
         }
         _ => true,
     };
+    let law = bed.law.as_ref()?.as_ref();
     let (mass, support, seating, usp) = (bed.mass?, support?, bed.seating?, usp?);
-    soft.then_some(LaidFoot::Sleeper { mass, support, seating, usp })
+    soft.then_some(LaidFoot::Sleeper { mass, support, seating, usp, law })
 }
 
 /// The default of a support's `damping_time`.

@@ -3,6 +3,7 @@
 use super::asked::{Asked, stands_on_layers};
 use super::crib::crib;
 use super::given::given;
+use super::law::settlement_law;
 use super::rails::{auxiliary_rails, rail};
 use super::spring::{Damped, damped};
 use super::strata::{Stratum, strata};
@@ -11,7 +12,7 @@ use crate::check::findings::Findings;
 use crate::check::places::along::{Along, along};
 use crate::check::text::files::Files;
 use crate::diag::{Code, Diagnostic, Span};
-use crate::scenario::{AuxiliaryRails, Crib, Given, Rail, Seating, Slab, SleeperBody};
+use crate::scenario::{AuxiliaryRails, Crib, Given, Rail, Seating, SettlementLaw, Slab, SleeperBody};
 use crate::units::number;
 use std::rc::Rc;
 
@@ -49,6 +50,7 @@ pub struct UnderSleeper {
     pub by_layers: bool,
     pub seating: Option<Option<Seating>>,
     pub usp: Option<Option<Cushion>>,
+    pub law: Option<Option<SettlementLaw>>,
 }
 
 /// An under sleeper pad under half a sleeper of that base area, m^2.
@@ -153,13 +155,17 @@ fn under_the_pads(
         Some(record) => sleeper.as_ref().and_then(|s| cushion(&record, s)).map(Some),
         None => (!form.unknown("usp")).then_some(None),
     };
+    let law = match form.get("law").filter(|slot| matches!(slot.value, Val::Record(_))) {
+        Some(slot) => settlement_law(slot, findings).map(Some),
+        None => (!form.unknown("law")).then_some(None),
+    };
     if let Some(sleeper) = &sleeper {
         bears(sleeper, findings);
     }
     let record = if by_layers { None } else { part(form, "support", "or layers, under the sleepers", findings) };
     let seating = if by_layers { Some(None) } else { record.as_ref().and_then(|r| seating(r)) };
     let support = record.and_then(|s| damped(&s));
-    (Some(Base::Sleeper(Box::new(UnderSleeper { mass, support, by_layers, seating, usp }))), None)
+    (Some(Base::Sleeper(Box::new(UnderSleeper { mass, support, by_layers, seating, usp, law }))), None)
 }
 
 /// Refuses fields that only a sleeper on a support can have.
@@ -171,7 +177,14 @@ fn without_support(form: &Record, field: &str, stands: &str, findings: &mut Find
     };
     let layered = |slot: &Slot| field == "slab" && matches!(&slot.value, Val::Pairs(pairs) if !pairs.is_empty());
     let has = |slot: &Slot| has(slot) || layered(slot);
-    let fields = [("usp", "none"), ("settlement", "0 mm"), ("layers", "[]"), ("crib", "none"), ("shoulder", "none")];
+    let fields = [
+        ("usp", "none"),
+        ("law", "none"),
+        ("settlement", "0 mm"),
+        ("layers", "[]"),
+        ("crib", "none"),
+        ("shoulder", "none"),
+    ];
     for (name, nothing) in fields {
         if let Some(slot) = form.get(name).filter(|slot| has(slot)) {
             let message =

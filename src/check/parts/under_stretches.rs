@@ -16,7 +16,7 @@ use std::ops::Range;
 use std::rc::Rc;
 
 /// Fields that only sleepers on an elastic support have.
-const OF_SLEEPERS: [&str; 5] = ["sleeper", "usp", "support", "settlement", "layers"];
+const OF_SLEEPERS: [&str; 6] = ["sleeper", "usp", "law", "support", "settlement", "layers"];
 
 /// A section before stretches change it.
 pub struct Unchanged<'a> {

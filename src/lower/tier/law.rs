@@ -2,7 +2,7 @@
 
 use super::cells::OF_CELLS;
 use super::{Proposal, Tier, edges};
-use crate::graph::{ExpectedError, LawBounds, LawNode, Model, NamedLaw, Node, Schedule};
+use crate::graph::{ExpectedError, LawBounds, LawNode, Model, NamedLaw, Node, OwnLaw, Schedule};
 use crate::lower::outlook::Outlook;
 use crate::lower::{Draft, accuracy, cost, supports, track};
 use crate::scenario::{Loading, Scenario, SettlementLaw, law_argument};
@@ -16,6 +16,7 @@ pub struct SettlementLaws;
 const READS: Reads = Reads {
     fields: &[
         "solve.law",
+        "trackform.law",
         "law.form",
         "law.loads",
         "law.cycles",
@@ -56,6 +57,7 @@ impl Tier for SettlementLaws {
             supports: draft.supports.clone(),
             law: named(&scenario.solve.law),
             followers: scenario.solve.other_laws.iter().map(named).collect(),
+            own: own(scenario),
         };
         let outlook = Outlook::new(&node, &law.supports, &law.law.law, blocks);
         let cost = cost::of_blocks(&node, blocks, &outlook);
@@ -78,12 +80,12 @@ impl Tier for SettlementLaws {
 
 /// Error of the law, against grains where the scene has a layer of them.
 fn of_law(scenario: &Scenario) -> ExpectedError {
-    let law = &scenario.solve.law;
-    if let Some(error) = law.error {
+    let laws = scenario.driving_laws();
+    let stated = laws.iter().map(|law| Some((law.error?, law.name.as_str()))).collect::<Option<Vec<_>>>();
+    if let Some((error, name)) = stated.and_then(|all| all.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))) {
         let evidence = format!(
-            "law `{}` states an error of {} against the cells to which it was fitted, and cells settle by up to {} \
+            "law `{name}` states an error of {} against the cells to which it was fitted, and cells settle by up to {} \
              less than a whole bed",
-            law.name,
             percent(error),
             percent(OF_CELLS)
         );
@@ -99,6 +101,19 @@ fn of_law(scenario: &Scenario) -> ExpectedError {
                    is 48 % below its grains"
                 .into(),
     }
+}
+
+/// The laws of single sleepers, each with its seats.
+fn own(scenario: &Scenario) -> Vec<OwnLaw> {
+    let mut own: Vec<OwnLaw> = Vec::new();
+    for (seat, law) in scenario.track.seats.iter().enumerate().filter_map(|(seat, it)| Some((seat, it.own_law()?))) {
+        let law = named(law);
+        match own.iter_mut().find(|known| known.law == law) {
+            Some(known) => known.seats.push(seat),
+            None => own.push(OwnLaw { law, seats: vec![seat] }),
+        }
+    }
+    own
 }
 
 /// Whether a sleeper stands on layers without a stated support.
