@@ -118,7 +118,7 @@ fn each_law_is_held_to_its_own_range() {
     // a law that no sleeper has is not asked
     let unused = SCENE.replace("law = fast, update", "law = slow, update");
     assert_eq!(mistakes(&unused), []);
-    let slab = treated().replace("law = slow }", "law = slow }").replace("over = -8 .. -5", "over = 2 .. 4");
+    let slab = treated().replace("over = -8 .. -5", "over = 2 .. 4");
     let found = mistakes(&slab);
     assert!(matches!(&found[..], [(Code::E0418, _)]), "{found:?}");
 }
