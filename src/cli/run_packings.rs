@@ -74,7 +74,7 @@ pub(super) fn further(directory: &Directory, running: &Running<'_>, run: &Run) -
     let (repeats, grains) = (solve.grains.repeats, &solve.grains);
     let mut found: Vec<Packing> = Vec::new();
     for seed in further_seeds(running) {
-        let so_far = Mean::of(own, &found);
+        let so_far = Mean::over(own, &found);
         if repeats.are_open() && so_far.is_enough(grains) {
             break;
         }
@@ -85,7 +85,7 @@ pub(super) fn further(directory: &Directory, running: &Running<'_>, run: &Run) -
         another(running.request, seed)?;
         found.extend(read()?);
     }
-    let all = Mean::of(own, &found);
+    let all = Mean::over(own, &found);
     if repeats.are_open() && !found.is_empty() && !all.is_enough(grains) {
         terminal::note(&format!("{repeats} packings are too few: {}\n", said(&all, grains)));
     }

@@ -170,7 +170,8 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
             return Outcome::Failed;
         }
     };
-    let mut next = study::next(&plan, &stored_of(&plan, &folder));
+    let mut stored = stored_of(&plan, &folder);
+    let mut next = study::next(&plan, &stored);
     let missing = next.points();
     match (folder.is_finished(), missing) {
         (true, 0) => terminal::note("this study has been finished before: nothing is run\n"),
@@ -184,7 +185,10 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
     let is_elsewhere = arguments.cluster.executor != Executor::Local && !folder.is_finished();
     while let (true, Next::Run(runs)) = (is_elsewhere, &next) {
         match elsewhere.perform(&folder, &asked, runs) {
-            Ok(None) => next = study::next(&plan, &stored_of(&plan, &folder)),
+            Ok(None) => {
+                stored = stored_of(&plan, &folder);
+                next = study::next(&plan, &stored);
+            }
             Ok(Some(outcome)) => return outcome,
             Err(error) => return refused(&error, compiled),
         }
@@ -192,7 +196,7 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
     let executor = execute::Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
     let runs = match next {
         Next::Done(runs) => runs,
-        Next::Run(_) => match perform(scene, &plan, stored_of(&plan, &folder), &folder, &executor, jobs) {
+        Next::Run(_) => match perform(scene, &plan, stored, &folder, &executor, jobs) {
             Ok(runs) => runs,
             Err(Unfinished::Broken(message)) => {
                 say(&[Diagnostic::new(Code::E0802, message).help("go on with `--resume`")], compiled);
@@ -201,8 +205,19 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
             Err(Unfinished::Asked { kept }) => return stopped(&arguments.out, kept, plan.points.len()),
         },
     };
+    finish(arguments, (scene, compiled, &plan), folder, &runs, (missing, started, jobs))
+}
+
+/// Writes what a study has found, and says it.
+fn finish(
+    arguments: &Arguments,
+    (scene, compiled, plan): (Scene<'_>, &Compiled, &Plan),
+    folder: StudyFolder,
+    runs: &[Vec<Repeat>],
+    (missing, started, jobs): (usize, Instant, usize),
+) -> Outcome {
     let title = compiled.scenario.as_ref().map_or("", |s| s.title.as_str());
-    let answer = Answer::new(title, &plan, runs.iter().map(|runs| PointOutcome::of(runs)).collect());
+    let answer = Answer::new(title, plan, runs.iter().map(|runs| PointOutcome::gathered(runs)).collect());
     let name = arguments.scene.file.file_name().unwrap_or_default().to_string_lossy();
     let shown = answer.best().first().copied().or(answer.nearest());
     let best = shown.map(|index| scene.compile(&plan.points[index].overrides));
@@ -213,7 +228,7 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
     let timings = BTreeMap::from([("total_s".to_string(), seconds), ("jobs".to_string(), jobs as f64)]);
     let written = match (folder.is_finished(), missing) {
         (true, 0) => folder.show_again(&page),
-        _ => folder.finish(&plan, (&answer, &runs), (&page, resolved.as_deref()), compiled, &timings),
+        _ => folder.finish(plan, (&answer, runs), (&page, resolved.as_deref()), compiled, &timings),
     };
     if let Err(error) = written {
         say(&[stored::diagnostic(&error)], compiled);

@@ -261,7 +261,7 @@ fn beside_transitions(track: &TrackNode) -> Vec<[usize; 2]> {
     }
 }
 
-/// Data by which stretches are compared: bay, pad stiffness, support stiffness and settlement of a seat, and its own law.
+/// Data of a seat by which stretches are compared: bay, pad stiffness, support stiffness, settlement, and its own law.
 type Likeness = ([f64; 4], Option<Law>);
 
 fn likeness(track: &TrackNode, supports: &[SupportNode], [first, last]: [usize; 2]) -> Vec<Likeness> {

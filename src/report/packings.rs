@@ -58,7 +58,7 @@ fn enough(run: &Run) -> String {
         "the mean of the largest settlement and of the step at the structure to within {tolerance} % of the largest \
          settlement"
     );
-    match Mean::of(&run.summary.scalars, &run.packings).is_enough(grains) {
+    match Mean::over(&run.summary.scalars, &run.packings).is_enough(grains) {
         true => format!(" Of {} packings these give {goal}.", grains.repeats),
         false => format!(" Even these {} packings do not give {goal}.", run.packings.len() + 1),
     }

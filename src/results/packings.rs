@@ -54,7 +54,7 @@ pub fn packing_directory(run: &Path, seed: u64) -> PathBuf {
 pub fn read_packings(run: &Path, own: &BTreeMap<String, Scalar>, solve: &Solve) -> Result<Vec<Packing>, ResultsError> {
     let mut found = Vec::new();
     for seed in (1..u64::from(solve.grains.repeats.most)).map(|number| solve.seed + number) {
-        if solve.grains.repeats.are_open() && Mean::of(own, &found).is_enough(&solve.grains) {
+        if solve.grains.repeats.are_open() && Mean::over(own, &found).is_enough(&solve.grains) {
             break;
         }
         match read_packing(run, seed)? {
@@ -87,8 +87,8 @@ pub struct Mean {
 }
 
 impl Mean {
-    /// Of a run and of its further packings.
-    pub fn of(own: &BTreeMap<String, Scalar>, further: &[Packing]) -> Mean {
+    /// Values of a run and of its further packings.
+    pub fn over(own: &BTreeMap<String, Scalar>, further: &[Packing]) -> Mean {
         let values = |name: &str| {
             let all = std::iter::once(own).chain(further.iter().map(|packing| &packing.scalars));
             all.map(|scalars| Some(scalars.get(name)?.value)).collect::<Option<Vec<f64>>>().unwrap_or_default()

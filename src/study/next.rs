@@ -28,7 +28,7 @@ pub fn next(plan: &Plan, stored: &[Vec<Repeat>]) -> Next {
             return Next::Run(missing);
         }
         let runs = || stored.iter().zip(&used).map(|(runs, used)| &runs[..*used]);
-        let open = Answer::new("", plan, runs().map(PointOutcome::of).collect()).open();
+        let open = Answer::new("", plan, runs().map(PointOutcome::gathered).collect()).open();
         if open.is_empty() {
             return Next::Done(runs().map(<[Repeat]>::to_vec).collect());
         }

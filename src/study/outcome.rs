@@ -25,7 +25,7 @@ pub enum PointOutcome {
 
 impl PointOutcome {
     /// The result of repeats, in order; if some failed, the first failure.
-    pub fn of(repeats: &[Repeat]) -> PointOutcome {
+    pub fn gathered(repeats: &[Repeat]) -> PointOutcome {
         let mut runs: Vec<Vec<f64>> = Vec::new();
         let mut all_misses: Vec<&[Option<Miss>]> = Vec::new();
         for repeat in repeats {
