@@ -1,6 +1,6 @@
 //! Differences of repeated points from the scene as it is, each with its 95 % interval.
 
-use super::plane::{Plane, cut, range};
+use super::plane::{Plane, cut, range, titled};
 use crate::report::curves::{Mark, Series};
 use crate::report::svg::{Anchor, Frame, Svg};
 use crate::scenario::Measured;
@@ -78,11 +78,11 @@ fn panel(svg: &mut Svg, answer: &Answer, (index, what): (usize, &Measured), rows
         y: (rows.len() as f64, 0.0),
     };
     let unit = if in_percent { "%" } else { what.unit.0.as_str() };
-    svg.text("strong", (frame.x, frame.y + 13.0), Anchor::Start, &cut(&what.text, (frame.width / 7.2) as usize));
+    svg.text("strong", (frame.x, frame.y + 13.0), Anchor::Start, &cut(&what.text, (frame.width / 7.8) as usize));
     plane.level_scale(svg);
     let Frame { x: left, y: top, width, height } = plane.frame;
     svg.line("axis", (left, top + height), (left + width, top + height));
-    svg.text("small", (left + width / 2.0, top + height + 34.0), Anchor::Middle, &format!("difference [{unit}]"));
+    svg.text("small", (left + width / 2.0, top + height + 34.0), Anchor::Middle, &titled("difference", unit));
     let zero = plane.point((0.0, 0.0)).0;
     svg.path("mark", &[(zero, top), (zero, top + height)], false, "as it is");
     let at = |place: usize, x: f64| plane.point((x, place as f64 + 0.5));

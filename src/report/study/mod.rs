@@ -118,7 +118,7 @@ fn best(html: &mut String, answer: &Answer, file: &str) {
         (false, n) => format!("{n} points are best: no other point is better in every objective."),
     };
     let sentences = [answer.certainty(), answer.against_as_it_is()].into_iter().flatten();
-    let against: String = sentences.map(|sentence| format!(" {sentence}")).collect();
+    let against: String = sentences.map(|sentence| format!(" {}", sentence.replace("+-", "\u{b1}"))).collect();
     let _ = write!(html, "<p class=\"caption\">{}</p>", prose(&format!("{caption}{against}")));
     table(html, answer, &beside_as_it_is(answer, &best[..best.len().min(MOST_SHOWN)]), false);
     if best.len() > MOST_SHOWN {
