@@ -149,6 +149,8 @@ pub(super) fn compute(directory: Directory, running: &Running<'_>, further: Furt
     };
     let packings = further(&directory, &run)?;
     let run = run.with_packings(packings);
+    // further packings have timings of their own
+    let timed = Timed { after: Instant::now(), ..timed };
     let mut files = files(&run, view.as_ref(), &out).map_err(|error| refused(&error))?;
     files.extend(running.resolved.iter().map(|text| (results::RESOLVED.to_owned(), text.clone().into_bytes())));
     put_in_place(directory, &files, &timed).map_err(|error| refused(&error))?;

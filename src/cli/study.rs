@@ -187,7 +187,13 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
         match elsewhere.perform(&folder, &asked, runs) {
             Ok(None) => {
                 stored = stored_of(&plan, &folder);
-                next = study::next(&plan, &stored);
+                let following = study::next(&plan, &stored);
+                // what is kept but damaged is computed here
+                let is_stuck = following == next;
+                next = following;
+                if is_stuck {
+                    break;
+                }
             }
             Ok(Some(outcome)) => return outcome,
             Err(error) => return refused(&error, compiled),
