@@ -13,7 +13,7 @@ use crate::execute::{self, Both, Ending, Event, Executor, Listener};
 use crate::graph::Graph;
 use crate::lower::Parameter;
 use crate::results::{
-    self, BedTestsView, BlockRow, Label, NamedBytes, Packing, ResultsError, Run, RunRecorder, Scalar, Source,
+    self, BedTestsView, BlockRow, Label, NamedBytes, Packing, Parting, ResultsError, Run, RunRecorder, Scalar, Source,
 };
 use crate::scenario::Scenario;
 use crate::store::{Beds, Directory, Work};
@@ -336,6 +336,10 @@ fn summary(run: &Run, page: &Path, seconds: f64) {
     }
     for sentence in results::unsettled(&run.scenario, &run.blocks, &run.laws) {
         out.push_str(&format!("  {sentence}\n"));
+    }
+    if let Some(parting) = Parting::of_rows(&run.scenario, &run.check) {
+        let help = if parting.exceeds() { format!(": {}", parting.help()) } else { String::new() };
+        out.push_str(&format!("  {}{help}\n", parting.sentence()));
     }
     out.push_str(&format!("{} ({} s)\n", page.display(), number((seconds * 10.0).round() / 10.0)));
     terminal::summary(&out);

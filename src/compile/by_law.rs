@@ -27,15 +27,16 @@ const LONGEST: f64 = 20.0;
 /// Settlements of the last plans: the run of the law is the longest part of a check.
 static SETTLED: Memo<Graph, Option<Vec<f64>>> = Memo::new(4);
 
-/// Settlement of every seat by the law of a scene with `cells` or `zone`, m, after all axles or after [`MOST`] blocks;
-/// `None` for any other scene, and if the law cannot run in [`LONGEST`].
+/// Settlement of every seat by the law of a scene with `cells`, `zone` or `check_cells`, m, after all axles or after
+/// [`MOST`] blocks; `None` for any other scene, and if the law cannot run in [`LONGEST`].
 pub fn settlement(planner: &Planner, scenario: &Scenario) -> Option<Vec<f64>> {
     let grains = &scenario.solve.grains;
-    if !matches!(*grains.tier, Tier::Cells | Tier::Zone) {
+    if !matches!(*grains.tier, Tier::Cells | Tier::Zone) && grains.check_cells == 0 {
         return None;
     }
     let mut by_law = scenario.clone();
     by_law.solve.grains.tier = Given { value: Tier::Law, origin: grains.tier.origin };
+    by_law.solve.grains.check_cells = 0;
     by_law.solve.update = Update::Geometric { first: FIRST, ratio: RATIO };
     let elements = &mut by_law.solve.elements_per_bay;
     elements.value = elements.value.min(ELEMENTS);

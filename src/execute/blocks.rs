@@ -7,7 +7,7 @@ use super::pair::{Pair, settling};
 use super::step::{BlockMeasures, Done};
 use crate::graph::{Blocks, Clock, Control, Graph, Runner, Update};
 use crate::nodes::{
-    Builders, Forces, Kept, Load, NodeError, PassageOutcome, Request, Superstructure, Told, VolumeSample,
+    Builders, CheckingCells, Forces, Kept, Load, NodeError, PassageOutcome, Request, Superstructure, Told, VolumeSample,
 };
 use crate::store::Beds;
 use std::ops::ControlFlow;
@@ -20,39 +20,66 @@ pub(super) fn run(
     from: Option<Checkpoint>,
 ) -> Result<Ending, RunError> {
     let at = |axles: u64| move |cause: NodeError| RunError::node(Clock::Axles(axles), cause);
-    let (done, axles, control, state) = restored(from, blocks)?;
-    let done = done as usize;
-    let begun = machine.track_on_ground_that(|ground| match &state {
-        Some(state) => ground.restore(state),
-        None => ground.prepare(&mut |stage, share| tell_stage(listener, stage, share)),
-    });
-    let (track, ground) = match begun {
+    let from = restored(from, blocks)?;
+    let Restored { blocks: done, axles, control, .. } = from;
+    let begun = machine
+        .track_on_ground_that(|ground| match &from.ground {
+            Some(state) => ground.restore(state),
+            None => ground.prepare(&mut |stage, share| tell_stage(listener, stage, share)),
+        })
+        .and_then(|(track, ground)| Ok((track, ground, checking(machine, &from, listener)?)));
+    let (track, ground, check) = match begun {
         Err(NodeError::Stopped) => return Ok(Ending::Stopped),
         begun => begun.map_err(at(axles))?,
     };
     let runs = machine.graph.track().map(settling).unwrap_or_default();
-    let mut run = Run { pair: Pair { blocks, track, ground, control, runs }, done, listener };
+    let pair = Pair { blocks, track, ground, check, control, runs };
+    let mut run = Run { pair, done: done as usize, listener };
     Ok(match run.go(axles)? {
         ControlFlow::Continue(()) => Ending::Finished,
         ControlFlow::Break(()) => Ending::Stopped,
     })
 }
 
-/// Blocks done, axles that have passed, the data for the length of the next block, and the state of the ground: from a
-/// checkpoint, or at the beginning. A checkpoint beyond the end of the schedule belongs to another schedule.
-pub(super) fn restored(
-    from: Option<Checkpoint>,
-    plan: &Blocks,
-) -> Result<(u64, u64, Control, Option<serde_json::Value>), RunError> {
+/// The state of a schedule of blocks: from a checkpoint, or at the beginning.
+#[derive(Default)]
+pub(super) struct Restored {
+    /// Blocks done, and axles that have passed.
+    pub blocks: u64,
+    pub axles: u64,
+    /// The data for the length of the next block.
+    pub control: Control,
+    /// The state of the ground, and of the cells that check it; `None` at the beginning.
+    pub ground: Option<serde_json::Value>,
+    check: Option<serde_json::Value>,
+}
+
+/// The state in a checkpoint. A checkpoint beyond the end of the schedule belongs to another schedule.
+pub(super) fn restored(from: Option<Checkpoint>, plan: &Blocks) -> Result<Restored, RunError> {
     match from.map(|checkpoint| (checkpoint.clock, checkpoint.state)) {
-        None => Ok((0, 0, Control::default(), None)),
-        Some((Clock::Axles(axles), ScheduleState::Blocks { blocks, control, ground }))
+        None => Ok(Restored::default()),
+        Some((Clock::Axles(axles), ScheduleState::Blocks { blocks, control, ground, check }))
             if axles <= plan.total && blocks as u64 <= axles =>
         {
-            Ok((blocks as u64, axles, control, Some(ground)))
+            Ok(Restored { blocks: blocks as u64, axles, control, ground: Some(ground), check })
         }
         Some(_) => Err(RunError::ForeignCheckpoint),
     }
+}
+
+/// The cells that check the ground; `None` in a graph without them, and after tamping, which ends a check.
+fn checking<'a>(
+    machine: &Machine<'a>,
+    from: &Restored,
+    listener: &mut dyn Listener,
+) -> Result<Option<CheckingCells<'a>>, NodeError> {
+    let Some(mut cells) = machine.checking_cells() else { return Ok(None) };
+    match (&from.ground, &from.check) {
+        (None, _) => cells.prepare(&mut |stage, share| tell_stage(listener, stage, share))?,
+        (Some(_), Some(state)) => cells.restore(state)?,
+        (Some(_), None) => return Ok(None),
+    }
+    Ok(Some(cells))
 }
 
 /// The first passage of a graph, over the track as the scene starts it; `None` if no train runs, and where grains would
@@ -224,9 +251,11 @@ impl Run<'_, '_> {
     fn between(&mut self, axles: u64, last: u64) -> Going<()> {
         self.done += 1;
         tell!(self, Event::Laws { axles, settlement: &self.pair.ground.settlement_by_law() });
-        let (blocks, control, ground) = (self.done, self.pair.control, &self.pair.ground);
+        going!(self.tell_check(axles));
+        let (blocks, control, ground, check) = (self.done, self.pair.control, &self.pair.ground, &self.pair.check);
         let state = || {
-            let state = ScheduleState::Blocks { blocks, control, ground: ground.save()? };
+            let check = check.as_ref().map(CheckingCells::save).transpose()?;
+            let state = ScheduleState::Blocks { blocks, control, ground: ground.save()?, check };
             Ok(Checkpoint { clock: Clock::Axles(axles), state })
         };
         tell!(self, Event::Between(Between { is_last: false, state: &state }));
@@ -235,9 +264,19 @@ impl Run<'_, '_> {
         Ok(ControlFlow::Continue(()))
     }
 
+    fn tell_check(&mut self, axles: u64) -> Going<()> {
+        if let Some(check) = &self.pair.check {
+            let (seats, settled) = (check.seats(), check.added(&self.pair.ground.settlement()));
+            tell!(self, Event::Checked { axles, seats: &seats, settled: &settled, cells: &check.settled() });
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
     /// Tamps what is due, and arrives at the same count on the track as it lies then.
     fn tamp(&mut self, axles: u64) -> Going<Exchange> {
         let before = self.pair.ground.settlement();
+        // the grains of the cells cannot be tamped
+        self.pair.check = None;
         let mut seats = Vec::new();
         for tamping in self.pair.blocks.tamped_after(axles) {
             let tamped = self.pair.ground.tamp(&tamping.seats, tamping.left);

@@ -2,7 +2,9 @@
 
 use super::BlockMeasures;
 use crate::graph::{BedRecipe, Block, Clock, Control, Runner};
-use crate::nodes::{BedUnderTrack, NodeError, PassageOutcome, Stage, TestState, Tested, Told, Unloaded, VolumeSample};
+use crate::nodes::{
+    BedUnderTrack, Checked, NodeError, PassageOutcome, Stage, TestState, Tested, Told, Unloaded, VolumeSample,
+};
 use crate::solvers::granular::Bed;
 use crate::solvers::granular::packing::Progress;
 use crate::store::FoundBed;
@@ -37,6 +39,9 @@ pub enum Event<'a> {
     /// Settlement of every seat by each law, the driving one first, m: as built, after each block and after each
     /// tamping.
     Laws { axles: u64, settlement: &'a [Vec<f64>] },
+    /// Cells of grains have passed the trains so far: by seat, the settlement that trains have added, m, and of its
+    /// cell.
+    Checked { axles: u64, seats: &'a [usize], settled: &'a [f64], cells: &'a [Checked] },
     /// A bed is being packed.
     Packing(&'a Progress),
     /// A bed is finished.
@@ -69,7 +74,7 @@ pub(super) fn tell_of_trains(
         Told::Beds(beds) => listener.hear(&Event::Beds { axles, under_train: true, beds: &beds }),
         Told::State(ground) => {
             let state = || {
-                let state = ScheduleState::Blocks { blocks, control, ground: ground()? };
+                let state = ScheduleState::Blocks { blocks, control, ground: ground()?, check: None };
                 Ok(Checkpoint { clock: Clock::Axles(axles), state })
             };
             listener.hear(&Event::Between(Between { is_last: false, state: &state }))
@@ -108,7 +113,14 @@ pub struct Checkpoint {
 #[serde(rename_all = "snake_case")]
 pub enum ScheduleState {
     /// Blocks done, the data for the length of the next block, and the state of the ground.
-    Blocks { blocks: usize, control: Control, ground: serde_json::Value },
+    Blocks {
+        blocks: usize,
+        control: Control,
+        ground: serde_json::Value,
+        /// The state of the cells that check the ground.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        check: Option<serde_json::Value>,
+    },
     /// Tests that are over, and the one under way.
     Tests { done: Vec<Tested>, running: Option<Box<TestState>> },
     /// The state of a schedule of another program.

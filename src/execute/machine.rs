@@ -3,7 +3,8 @@
 use crate::graph::quantity::SETTLEMENT;
 use crate::graph::{Blocks, Clock, Fault, Graph, Model, Node, TrackNode};
 use crate::nodes::{
-    Builders, CellGround, CellParts, GrainGround, GrainParts, NodeError, Substructure, Superstructure, TrackSystem,
+    Builders, CellGround, CellParts, CheckingCells, GrainGround, GrainParts, NodeError, Substructure, Superstructure,
+    TrackSystem,
 };
 use crate::store::Beds;
 use std::fmt;
@@ -111,6 +112,11 @@ impl<'a> Machine<'a> {
         let mut track = TrackSystem::new(node, blocks, &self.graph.records);
         track.stand_on(ground.responses())?;
         Ok((track, ground))
+    }
+
+    /// The cells that check the settlement of the graph; `None` if none do.
+    pub(super) fn checking_cells(&self) -> Option<CheckingCells<'a>> {
+        self.graph.check().map(|cells| CheckingCells::new(CellParts { cells, beds: self.beds }))
     }
 
     /// Grains under the track of the graph, with the soil below them; `None` if there are none.

@@ -5,7 +5,8 @@ use super::exchange::Exchange;
 use super::machine::RunError;
 use crate::graph::{Block, Blocks, Clock, Control, Runner, TrackNode};
 use crate::nodes::{
-    Following, Load, NodeError, PassageOutcome, StandingForces, Substructure, Superstructure, TrackSystem,
+    CheckingCells, Following, Forces, Load, NodeError, PassageOutcome, StandingForces, Substructure, Superstructure,
+    TrackSystem,
 };
 use crate::solvers::settlement::Peak;
 use crate::solvers::track::Direction::{Backward, Forward};
@@ -44,6 +45,8 @@ pub(super) struct Pair<'a> {
     pub blocks: &'a Blocks,
     pub track: TrackSystem<'a>,
     pub ground: Box<dyn Substructure + 'a>,
+    /// Cells of grains that get the same trains as the ground.
+    pub check: Option<CheckingCells<'a>>,
     pub control: Control,
     /// Stretches of neighbouring seats that can settle.
     pub runs: Vec<Range<usize>>,
@@ -66,7 +69,8 @@ impl Pair<'_> {
 
     pub fn ensure(&self, exchange: &mut Exchange, runners: &[Runner]) -> Result<(), RunError> {
         let clock = Clock::Axles(exchange.axles);
-        let done = exchange.ensure(&self.track, runners, self.ground.forces());
+        let forces = if self.check.is_some() { Forces::Histories } else { self.ground.forces() };
+        let done = exchange.ensure(&self.track, runners, forces);
         done.map_err(|cause| RunError::node(clock, cause))
     }
 
@@ -136,6 +140,9 @@ impl Pair<'_> {
         if let Err(cause) = self.ground.advance_and_follow(loads, follow) {
             self.ground.roll_back(mark);
             return Err(RunError::node(Clock::Axles(axles), cause));
+        }
+        if let Some(check) = &mut self.check {
+            check.advance(loads, follow).map_err(|cause| RunError::node(Clock::Axles(axles), cause))?;
         }
         self.stand(axles)
     }

@@ -2,7 +2,7 @@
 //! the state is reported.
 
 use super::Between;
-use super::blocks::{bearable, restored};
+use super::blocks::{Restored, bearable, restored};
 use super::event::{Checkpoint, Event, Listener, ScheduleState, tell_of_trains, tell_stage};
 use super::machine::{Ending, Machine, RunError};
 use super::step::BlockMeasures;
@@ -19,7 +19,7 @@ pub(super) fn run(
     let at = |axles: u64| move |cause: NodeError| RunError::node(Clock::Axles(axles), cause);
     let no_grains = || NodeError::Other { node: "grains".into(), why: "the scene has no grains under a track".into() };
     let parts = machine.grain_parts().ok_or_else(no_grains).map_err(at(0))?;
-    let (mut done, mut axles, _, state) = restored(from, blocks)?;
+    let Restored { blocks: mut done, mut axles, ground: state, .. } = restored(from, blocks)?;
     let mut ground = GrainGround::new(parts);
     let begun = match &state {
         Some(state) => ground.restore(state),
@@ -88,7 +88,8 @@ pub(super) fn run(
         (axles, done) = (axles + block.axles, done + 1);
         let state = || {
             let ground = ground.save()?;
-            let state = ScheduleState::Blocks { blocks: done as usize, control: Control::default(), ground };
+            let state =
+                ScheduleState::Blocks { blocks: done as usize, control: Control::default(), ground, check: None };
             Ok(Checkpoint { clock: Clock::Axles(axles), state })
         };
         let between = Event::Between(Between::new(false, &state));

@@ -101,6 +101,17 @@ pub struct TestWork {
 }
 
 impl Cost {
+    /// The cost of this work and of other work after it; the work that is counted stays this one.
+    #[must_use]
+    pub fn and(self, other: Cost) -> Cost {
+        Cost {
+            seconds: self.seconds + other.seconds,
+            seconds_on_two_cores: self.seconds_on_two_cores + other.seconds_on_two_cores,
+            bytes: self.bytes + other.bytes,
+            ..self
+        }
+    }
+
     /// The work of passages; zero for a test.
     pub fn passages(&self) -> PassageWork {
         match self.work {

@@ -85,6 +85,9 @@ fn listed(node: &Node) -> ListedNode {
         Model::Actuators(actuators) => ("loads of a test rig".into(), of_actuators(actuators)),
         Model::Grains(grains) => ("grains under the sleepers".into(), of_grains(grains)),
         Model::Cells(cells) => ("a periodic cell of grains for each distinct sleeper".into(), of_cells(cells)),
+        Model::Check(cells) => {
+            ("cells of grains that check the settlement of their sleepers".into(), of_checking_cells(cells))
+        }
         Model::Soil(soil) => ("soil below the grains".into(), of_soil(soil)),
         Model::Custom(custom) => (format!("`{}` of another program", custom.kind), custom.details.clone()),
     };
@@ -192,7 +195,7 @@ fn of_grains(grains: &GrainsNode) -> Vec<String> {
     lines
 }
 
-fn of_cells(node: &CellsNode) -> Vec<String> {
+fn each_cell(node: &CellsNode) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for (index, cell) in node.cells.iter().enumerate() {
         let bed = &node.beds[cell.bed];
@@ -214,22 +217,40 @@ fn of_cells(node: &CellsNode) -> Vec<String> {
         lines.extend(cell.crib.map(of_crib));
         lines.extend(cell.glued.iter().map(|glued| of_glued(glued, bed, 0.0)));
     }
+    lines
+}
+
+fn of_cells(node: &CellsNode) -> Vec<String> {
+    let mut lines = each_cell(node);
     lines.push(format!(
         "a sleeper gets its own cell if its load differs by more than {} % of the largest load",
         number((1e3 * node.tolerance).round() / 10.0)
     ));
     lines.push("stiffness of supports: from the forces of the last computed passage".into());
-    lines.push(match node.headway_time {
-        Some(time) => {
-            format!("trains of a block follow each other at an interval of {} s", number(rounded_to_mm(time)))
-        }
-        None => "trains run one by one, and the sleepers come to rest between two trains".into(),
-    });
-    lines.push(format!(
-        "trains are left out if a law that is fitted during the run has an error below {} % of the largest settlement so far, or of the compression under the train",
-        number((1e3 * node.tolerance).round() / 10.0)
-    ));
+    lines.extend(trains_of_cells(node));
     lines
+}
+
+fn of_checking_cells(node: &CellsNode) -> Vec<String> {
+    let mut lines = each_cell(node);
+    lines.push("nothing returns to the track".into());
+    lines.extend(trains_of_cells(node));
+    lines
+}
+
+fn trains_of_cells(node: &CellsNode) -> [String; 2] {
+    [
+        match node.headway_time {
+            Some(time) => {
+                format!("trains of a block follow each other at an interval of {} s", number(rounded_to_mm(time)))
+            }
+            None => "trains run one by one, and the sleepers come to rest between two trains".into(),
+        },
+        format!(
+            "trains are left out if a law that is fitted during the run has an error below {} % of the largest settlement so far, or of the compression under the train",
+            number((1e3 * node.tolerance).round() / 10.0)
+        ),
+    ]
 }
 
 fn of_crib(crib: Crib) -> String {

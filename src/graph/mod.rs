@@ -123,12 +123,17 @@ impl Graph {
         law.into_iter().flat_map(|node| std::iter::once(&node.law).chain(&node.followers))
     }
 
+    /// The cells of grains that check a settlement law; `None` if none do.
+    pub fn check(&self) -> Option<&CellsNode> {
+        self.nodes.iter().find_map(|node| if let Model::Check(cells) = &node.model { Some(cells) } else { None })
+    }
+
     /// Every bed of grains.
     pub fn beds(&self) -> impl Iterator<Item = &BedPlan> {
         self.nodes.iter().flat_map(|node| match &node.model {
             Model::Bed(bed) => std::slice::from_ref(&bed.bed),
             Model::Grains(grains) => grains.beds.as_slice(),
-            Model::Cells(cells) => cells.beds.as_slice(),
+            Model::Cells(cells) | Model::Check(cells) => cells.beds.as_slice(),
             _ => &[],
         })
     }

@@ -31,6 +31,8 @@ pub enum Model {
     Grains(GrainsNode),
     /// A cell of grains for each distinct sleeper.
     Cells(CellsNode),
+    /// Cells of grains under some sleepers, whose settlement is compared with the settlement of the track.
+    Check(CellsNode),
     /// The ground below the grains.
     Soil(SoilNode),
     /// A node of another program, which also builds it.
@@ -80,6 +82,7 @@ impl Node {
                 (gives, takes)
             }
             Model::Cells(_) => (vec![SUPPORT_STIFFNESS, SUPPORT_DAMPING, SETTLEMENT], vec![SLEEPER_FORCES]),
+            Model::Check(_) => (vec![], vec![SLEEPER_FORCES]),
             Model::Soil(_) => (vec![SOIL_VELOCITY], vec![GRAIN_FORCE]),
             Model::Custom(node) => return node.ports.clone(),
         };

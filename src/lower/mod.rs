@@ -166,7 +166,8 @@ impl Planner {
         });
         let of_tiers = self.tiers.iter().flat_map(|other| {
             let acted = tier == Some(other.name());
-            other.reads().iter().map(move |reads| Reader { reads, acted })
+            let reads = other.reads().iter().chain(other.also_reads(scenario));
+            reads.map(move |reads| Reader { reads, acted })
         });
         of_passes.chain(of_tiers).collect()
     }

@@ -33,7 +33,7 @@ impl Builders {
                 let builder = self.substructures.get(&custom.kind).ok_or_else(|| none(&custom.kind))?;
                 builder(custom).map(|ground| ground as Box<dyn Substructure>)
             }
-            Model::Grains(_) | Model::Cells(_) => Err(none("grains")),
+            Model::Grains(_) | Model::Cells(_) | Model::Check(_) => Err(none("grains")),
             Model::Soil(_) => Err(none("soil")),
             Model::Bed(_) => Err(none("bed under actuators")),
             Model::Actuators(_) => Err(none("actuators")),

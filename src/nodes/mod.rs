@@ -5,6 +5,7 @@
 //! unit and rate of a port are in the graph.
 
 mod build;
+mod check;
 mod error;
 mod grains;
 mod law;
@@ -19,10 +20,11 @@ mod track;
 pub mod turns;
 
 pub use build::Builders;
+pub use check::CheckingCells;
 pub use error::NodeError;
 pub use grains::{BedUnderActuators, TestState, Tested};
 pub use law::LawGround;
-pub use on_cells::{CellGround, Parts as CellParts, Passed, Specimen, TrainForces};
+pub use on_cells::{CellGround, Checked, Parts as CellParts, Passed, Specimen, TrainForces};
 pub use on_grains::{
     BedUnderTrack, Following, GrainGround, Parted, Parts as GrainParts, PassageEnergy, Riders, Stage, Telling,
     TimedSteps, Told, VolumeSample,

@@ -11,6 +11,7 @@ mod bed_section;
 mod bed_tests;
 mod blocks;
 mod chart;
+mod check;
 mod colour_map;
 mod comparison;
 mod counts;
@@ -126,6 +127,7 @@ pub fn figures(run: &Run) -> Vec<Figure> {
         ];
         figures.extend(along.into_iter().flatten());
         figures.extend(laws::spread(run));
+        figures.extend(check::checked(run));
     }
     figures.extend(histories::histories(run));
     figures.extend(hanging::hanging_sleeper(run));

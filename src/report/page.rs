@@ -8,7 +8,7 @@ use super::prose::{computed, prose, unmarked};
 use super::reliance::reliance;
 use super::scene::force;
 use super::svg::{STYLE, escape};
-use super::{Figure, figures, laws};
+use super::{Figure, check, figures, laws};
 use crate::graph::Clock;
 use crate::results::{Provenance, Run, SoFar, Verdict};
 use crate::scenario::{Loading, Scenario, Train};
@@ -51,6 +51,7 @@ fn page_with(run: &Run, notice: &str) -> String {
     packings(&mut html, run);
     reliance(&mut html, &run.summary.reliance);
     laws::remarks(&mut html, run);
+    check::remarks(&mut html, run);
     expectations(&mut html, &run.summary.expectations);
     contents(&mut html, &figures, run);
     figures.iter().for_each(|figure| picture(&mut html, figure));

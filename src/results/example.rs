@@ -464,6 +464,7 @@ fn finished(
         sleepers,
         blocks,
         laws: vec![],
+        check: vec![],
         rail: vec![],
         trains,
         tampings: vec![],

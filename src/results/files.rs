@@ -30,9 +30,12 @@ pub fn files(run: &Run, directory: &Path) -> Result<Vec<NamedBytes>, ResultsErro
         (super::BlockRow::FILE, table(&run.blocks, directory)?),
         (super::RailRow::FILE, table(&run.rail, directory)?),
     ];
-    // these files exist only with several laws, several trains, or tamping
+    // these files exist only with several laws, cells that check a law, several trains, or tamping
     if !run.laws.is_empty() {
         files.push((super::LawRow::FILE, table(&run.laws, directory)?));
+    }
+    if !run.check.is_empty() {
+        files.push((super::CheckRow::FILE, table(&run.check, directory)?));
     }
     if !run.trains.is_empty() {
         files.push((super::TrainRow::FILE, table(&run.trains, directory)?));
@@ -81,6 +84,7 @@ pub fn read(directory: &Path) -> Result<Run, ResultsError> {
         sleepers: read_table(directory)?,
         blocks: read_table(directory)?,
         laws: read_table_if_any(directory)?,
+        check: read_table_if_any(directory)?,
         rail: read_table(directory)?,
         trains: read_table_if_any(directory)?,
         tampings: read_table_if_any(directory)?,

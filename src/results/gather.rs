@@ -1,6 +1,8 @@
 //! The results of a run, from its recorder.
 
-use super::{Provenance, Reliance, Run, RunRecorder, Summary, TestTables, law_rows, summarise_laws, verdicts};
+use super::{
+    Provenance, Reliance, Run, RunRecorder, Summary, TestTables, law_rows, summarise_check, summarise_laws, verdicts,
+};
 use crate::diag::{Diagnostic, Sources};
 use crate::graph::Graph;
 use crate::scenario::Scenario;
@@ -33,6 +35,7 @@ impl Run {
         let laws = law_rows(scenario, &tables.laws);
         let mut scalars = recorder.scalars();
         scalars.extend(summarise_laws(scenario, &laws));
+        scalars.extend(summarise_check(scenario, &tables.check));
         let view = tables.view(&histories, &scalars, &scenario.track, &graph.supports);
         let expectations = verdicts(scenario, view);
         let reliance = Reliance::new(scenario, graph, (diagnostics, sources), tables, &scalars);
@@ -40,6 +43,7 @@ impl Run {
             sleepers: tables.sleepers.clone(),
             blocks: tables.blocks.clone(),
             laws,
+            check: tables.check.clone(),
             rail: tables.rail.clone(),
             trains: tables.trains.clone(),
             tampings: tables.tampings.clone(),
@@ -57,6 +61,7 @@ impl Run {
             sleepers: Vec::new(),
             blocks: Vec::new(),
             laws: Vec::new(),
+            check: Vec::new(),
             rail: Vec::new(),
             trains: Vec::new(),
             tampings: Vec::new(),

@@ -7,6 +7,7 @@ mod about;
 mod bed;
 mod bed_readings;
 mod bed_tests;
+mod check;
 mod columns;
 mod confidence;
 mod error;
@@ -42,6 +43,8 @@ pub use bed_tests::{
     BedTest, BedTests, BedTestsView, CycleRow, LoopRow, MeanCycleRow, SensorRow, SpecimenRow, TestTables, VolumeRow,
     read_tests, test_files, tests_file,
 };
+pub use check::{CheckRow, Parting};
+use check::{check_rows, summarise_check};
 pub use confidence::{
     confidence_of_difference, is_known_within, mean_and_confidence, mean_and_deviation, mean_and_interval,
 };
@@ -82,6 +85,9 @@ pub struct Run {
     pub blocks: Vec<BlockRow>,
     /// Settlement by each law; empty if there is only one.
     pub laws: Vec<LawRow>,
+    /// Settlement by the law and in cells of grains; empty if no cells check the law.
+    #[serde(default)]
+    pub check: Vec<CheckRow>,
     pub rail: Vec<RailRow>,
     /// Passages of each kind of train; empty if there is only one.
     pub trains: Vec<TrainRow>,

@@ -4,9 +4,9 @@
 use super::kept_beds::{BedPieces, KeptBeds};
 use super::under_track::Part;
 use super::{
-    BedSummary, BedTest, BedTests, BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Run, Scalar,
-    SleeperRow, SleeperTable, SoFar, Source, Tables, TampingRow, TrainRow, bed_summary, histories, static_wheel_load,
-    summarise, test_loads,
+    BedSummary, BedTest, BedTests, BlockRow, CheckRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Run,
+    Scalar, SleeperRow, SleeperTable, SoFar, Source, Tables, TampingRow, TrainRow, bed_summary, check_rows, histories,
+    static_wheel_load, summarise, test_loads,
 };
 use crate::execute::{Between, BlockMeasures, Checkpoint, Event, Listener};
 use crate::graph::{Block, Blocks, Graph, Record, Runner, SupportNode, TrackNode};
@@ -33,6 +33,9 @@ pub struct RunTables {
     pub settlements: Vec<HistoryRow>,
     /// Settlement by each law after every block; empty if there is only one law.
     pub laws: Vec<LawCount>,
+    /// Settlement by the law and in the cells of grains that check it, after every block.
+    #[serde(default)]
+    pub check: Vec<CheckRow>,
     /// Passages of each kind of train; empty if there is only one.
     pub trains: Vec<TrainRow>,
     pub tampings: Vec<TampingRow>,
@@ -449,6 +452,9 @@ impl Listener for RunRecorder<'_> {
             }
             Event::Tamped { axles, seats, before, after } => self.tamped(*axles, seats, before, after),
             Event::Laws { axles, settlement } => self.laws(*axles, settlement),
+            Event::Checked { axles, seats, settled, cells } => {
+                self.tables.check.extend(check_rows(self.track(), *axles, seats, (settled, cells)));
+            }
             Event::Packed { bed, found } => {
                 self.bed = Some(bed_summary(&self.scenario.title, bed, &found.packed, None));
             }

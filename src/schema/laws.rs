@@ -1,7 +1,8 @@
-//! The words of `law.form`: the settlement laws with their arguments. The letters are taken from the publications.
+//! Settlement laws: the kind `law` and the words of `law.form` with their arguments. The letters are taken from the
+//! publications.
 
-use super::fields::{SEAT, default, number, per, required, word};
-use super::{Field, Form, Word};
+use super::fields::{SEAT, default, measure, number, optional, per, required, word};
+use super::{Field, Form, Kind, Measure, Role, Word};
 
 const fn law(name: &'static str, doc: &'static str, arguments: &'static [Field]) -> Word {
     Word { name, doc, arguments, planned: false }
@@ -11,7 +12,40 @@ const FORCE: Form = per("kN", 0.1, 1000.0, &SEAT);
 const CYCLES: Form = Form::OneOf(&[number("cycles", 1.0, 1e12), number("axles", 1.0, 1e12)]);
 const EXPONENT: Form = number("", 0.0, 10.0);
 
-pub(super) const FORMS: &[Word] = &[
+pub(super) const LAW: Kind = Kind {
+    name: "law",
+    doc: "A settlement law: settlement of a support from the peaks of its contact force.",
+    role: Role::Part,
+    fields: &[
+        required("form", Form::Words(FORMS), "equation of the law, with its parameters"),
+        optional(
+            "loads",
+            Form::Interval(Measure { basis: Some(&SEAT), ..measure("kN", 0.0, 10_000.0) }),
+            "peak forces for which the law was calibrated",
+        ),
+        optional("cycles", Form::Interval(measure("axles", 0.0, 1e12)), "axle counts for which the law was calibrated"),
+        optional("voids", Form::Interval(measure("mm", 0.0, 100.0)), "voids for which the law was calibrated"),
+        optional(
+            "error",
+            number("%", 0.0, 1000.0),
+            "largest error against what the law was fitted to / largest settlement; a law that states it is refused beyond its `loads`, `cycles` and `voids`",
+        ),
+        default(
+            "cycle_per",
+            Form::Words(&[
+                word("axle", "every axle is a cycle"),
+                word("bogie", "the larger peak of the two axles of a bogie is one cycle"),
+                word("vehicle", "the largest peak of the four axles of a vehicle is one cycle"),
+            ]),
+            "axle",
+            "meaning of one cycle in the law; publications differ by a factor of four",
+        ),
+    ],
+    alternatives: &[],
+    planned: &[],
+};
+
+const FORMS: &[Word] = &[
     law(
         "varandas",
         "Varandas, Hölscher and Silva (2014): integral over the force of the settlement that each exceedance of this force adds",

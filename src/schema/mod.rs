@@ -1,6 +1,6 @@
 //! The vocabulary of the language: every kind, field, word, unit, range and default.
 //!
-//! Checking, defaults and `trackbed docs` all read this table; a field is added in one place, `kinds.rs`.
+//! Checking, defaults and `trackbed docs` all read this table; a field is added in one place: `kinds.rs`, or the file of its kind.
 
 mod called;
 mod docs;
@@ -10,6 +10,7 @@ mod laws;
 mod materials;
 mod reads;
 mod results;
+mod solve;
 mod traffic;
 
 pub use called::{Names, called};

@@ -4,7 +4,7 @@
 //! law. One cell gives the results of all alike sleepers.
 
 use super::grains::{ADDED, DAMPING_TIME, READS, headway, standing, train_by_train};
-use super::rig::cost::{PassingCells, cells_under_track};
+use super::rig::cost::{PassingCells, cells_under_track, of_packings, trains_of_cells};
 use super::{Proposal, Tier, edges, refused, waiting};
 use crate::diag::{Diagnostic, Severity};
 use crate::graph::{
@@ -21,9 +21,9 @@ use crate::solvers::foundation::{self, Method};
 pub struct Cells;
 
 /// Fields of the cells themselves.
-const CELLS: Reads = Reads {
+pub(super) const CELLS: Reads = Reads {
     fields: &["solve.cell_bays"],
-    acts_where: "where sleepers stand on cells of grains: `substructure = cells`",
+    acts_where: "where cells of grains carry sleepers or check a law: `substructure = cells`, `check_cells`",
 };
 
 /// Young's modulus of grains for the stiffness of the soil below them alone, Pa.
@@ -72,35 +72,18 @@ impl Tier for Cells {
         let (train, _) = blocks.kind(0);
         let headway_time = headway(scenario).map(|headway| headway / train.speed);
         let (cells, cell_of) = if beds.is_empty() { Default::default() } else { cells(draft, &beds) };
-        let seats = cell_of.iter().enumerate().map(|(seat, cell)| cell.map(|_| on_cell(draft, seat))).collect();
         let bays = cells.iter().map(|cell| f64::from(cell.copies)).sum();
-        let alone = train.wheel_base() / train.speed;
-        let cost = cells_under_track(draft, &blocks, PassingCells { bays, headway_time, alone });
+        let (alone, trains) = (train.wheel_base() / train.speed, trains_of_cells(&blocks));
+        let cost = of_packings(scenario, cells_under_track(draft, PassingCells { bays, headway_time, alone, trains }));
         refusals.extend(match asked {
-            true => refused::of_traffic(scenario)
-                .into_iter()
-                .chain(refused::ridden(scenario))
-                .chain(refused::other_grains(scenario, &[[f64::NEG_INFINITY, f64::INFINITY]]))
-                .collect(),
-            false => waiting::refusal(scenario).into_iter().collect::<Vec<_>>(),
+            true => refused::of_cells(scenario),
+            false => waiting::refusal(scenario).into_iter().collect(),
         });
         let what = match cells.len() {
             0 => "a cell of grains for each distinct sleeper".to_owned(),
             count => format!("a cell of grains for each of {count} distinct sleepers"),
         };
-        let node = CellsNode {
-            beds,
-            cells,
-            cell_of,
-            seats,
-            settlement: scenario.track.seats.iter().map(|seat| *seat.initial_settlement).collect(),
-            headway_time,
-            damping_time: DAMPING_TIME,
-            gravity: *scenario.solve.gravity,
-            time_step: scenario.solve.grains.step.map(|step| *step),
-            added_inertia: ADDED,
-            tolerance: *scenario.solve.grains.tolerance,
-        };
+        let node = node(draft, beds, (cells, cell_of), headway_time);
         let nodes = vec![
             Node::new("track", Model::Track(Box::new(track::track(draft)))),
             Node::new("grains", Model::Cells(node)),
@@ -123,6 +106,29 @@ impl Tier for Cells {
             runs: asked && refusals.is_empty(),
             refusals,
         })
+    }
+}
+
+/// The node of some cells, each for the seats that `cell_of` names.
+pub(super) fn node(
+    draft: &Draft<'_>,
+    beds: Vec<BedPlan>,
+    (cells, cell_of): (Vec<CellPlan>, Vec<Option<usize>>),
+    headway_time: Option<f64>,
+) -> CellsNode {
+    let scenario = draft.scenario;
+    CellsNode {
+        beds,
+        cells,
+        seats: cell_of.iter().enumerate().map(|(seat, cell)| cell.map(|_| on_cell(draft, seat))).collect(),
+        cell_of,
+        settlement: scenario.track.seats.iter().map(|seat| *seat.initial_settlement).collect(),
+        headway_time,
+        damping_time: DAMPING_TIME,
+        gravity: *scenario.solve.gravity,
+        time_step: scenario.solve.grains.step.map(|step| *step),
+        added_inertia: ADDED,
+        tolerance: *scenario.solve.grains.tolerance,
     }
 }
 
@@ -166,19 +172,24 @@ fn is_alike(a: &CellPlan, b: &CellPlan) -> bool {
 /// Groups of seats that settle by about the same amount under the law, each seat with its settlement, in ascending
 /// order.
 fn settling_alike(draft: &Draft<'_>, seats: Vec<usize>) -> Vec<Vec<(f64, usize)>> {
-    let scenario = draft.scenario;
-    let by_law = draft.by_law.filter(|settlement| settlement.len() == scenario.track.seats.len());
-    // without a law the distance from the transition takes the place of the settlement
-    let beside = |seat: usize| {
-        let away = |x: f64| (scenario.track.seats[seat].x - x).abs();
-        scenario.track.transitions.iter().map(|t| away(t.x)).fold(NEAR, f64::min)
-    };
-    let measure = |seat: usize| by_law.map_or_else(|| beside(seat), |settlement| settlement[seat]);
-    let width = by_law.map_or(0.0, |settlement| {
+    let width = by_law(draft).map_or(0.0, |settlement| {
         let largest = settlement.iter().fold(0.0, |most: f64, settlement| most.max(settlement.abs()));
-        2.0 * *scenario.solve.grains.tolerance * largest
+        2.0 * *draft.scenario.solve.grains.tolerance * largest
     });
-    seats_alike(seats.into_iter().map(|seat| (measure(seat), seat)).collect(), width)
+    seats_alike(seats.into_iter().map(|seat| (measure(draft, seat), seat)).collect(), width)
+}
+
+/// Settlement of every seat by the law, if it ran, m.
+fn by_law<'a>(draft: &Draft<'a>) -> Option<&'a [f64]> {
+    draft.by_law.filter(|settlement| settlement.len() == draft.scenario.track.seats.len())
+}
+
+/// Settlement of a seat by the law, m. If no law ran, minus the distance to the nearest transition takes its place.
+pub(super) fn measure(draft: &Draft<'_>, seat: usize) -> f64 {
+    let track = &draft.scenario.track;
+    let away = |x: f64| (track.seats[seat].x - x).abs();
+    let beside = || -track.transitions.iter().map(|t| away(t.x)).fold(NEAR, f64::min);
+    by_law(draft).map_or_else(beside, |settlement| settlement[seat])
 }
 
 /// The seat whose cell is used for a group: the middle one of the seats that every wheel passes and whose settlement is
@@ -196,7 +207,7 @@ fn typical(draft: &Draft<'_>, group: &[(f64, usize)]) -> usize {
 }
 
 /// Whether every wheel starts far before a seat and stops far behind it.
-fn every_wheel_passes(draft: &Draft<'_>, seat: usize) -> bool {
+pub(super) fn every_wheel_passes(draft: &Draft<'_>, seat: usize) -> bool {
     let (Some(passage), Some(blocks)) = (draft.passages.first(), &draft.blocks) else { return true };
     let away = blocks.kind(0).0.wheel_base() + REACH;
     (passage.left + away..=passage.right - away).contains(&draft.scenario.track.seats[seat].x)
@@ -213,7 +224,7 @@ fn on_cell(draft: &Draft<'_>, seat: usize) -> SeatOnCell {
 }
 
 /// A cell with the sleeper of a seat in its middle; `None` for a seat without grains.
-fn plan(scenario: &Scenario, beds: &[BedPlan], seat: usize) -> Option<CellPlan> {
+pub(super) fn plan(scenario: &Scenario, beds: &[BedPlan], seat: usize) -> Option<CellPlan> {
     let track = &scenario.track;
     let here = track.seats.get(seat).filter(|seat| seat.is_ballasted())?;
     let section = &track.sections[here.section];

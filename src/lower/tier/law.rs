@@ -1,6 +1,7 @@
 //! Tier `law`: a settlement law under each sleeper, published or fitted.
 
 use super::cells::OF_CELLS;
+use super::check::{self, Check};
 use super::{Proposal, Tier, edges};
 use crate::graph::{ExpectedError, LawBounds, LawNode, Model, NamedLaw, Node, OwnLaw, Schedule};
 use crate::lower::outlook::Outlook;
@@ -23,6 +24,7 @@ const READS: Reads = Reads {
         "law.voids",
         "law.error",
         "law.cycle_per",
+        "solve.check_cells",
         "support.damping",
         "support.damping_time",
         "usp.damping_time",
@@ -43,6 +45,10 @@ impl Tier for SettlementLaws {
         &[&track::READS, &track::SUPPORTS, &READS]
     }
 
+    fn also_reads(&self, scenario: &Scenario) -> &'static [&'static Reads] {
+        if scenario.solve.grains.check_cells > 0 { &check::READS } else { &[] }
+    }
+
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
         let scenario = draft.scenario;
         if !matches!(scenario.loading, Some(Loading::Traffic(_))) {
@@ -61,19 +67,21 @@ impl Tier for SettlementLaws {
         };
         let outlook = Outlook::new(&node, &law.supports, &law.law.law, blocks);
         let cost = cost::of_blocks(&node, blocks, &outlook);
-        let nodes = vec![Node::new("track", Model::Track(Box::new(node))), Node::new("substructure", Model::Law(law))];
+        let Check { node: cells, cost: of_cells, refusals } = check::check(draft, outlook.blocks);
+        let laws = [Node::new("track", Model::Track(Box::new(node))), Node::new("substructure", Model::Law(law))];
+        let nodes: Vec<Node> = laws.into_iter().chain(cells).collect();
         let stated = "the scene gives the stiffness of its supports";
         let why = if stands_on_layers(scenario) { "the layers give the stiffness of the supports" } else { stated };
         Ok(Proposal {
             edges: edges(&nodes),
             nodes,
             schedule: Schedule::Blocks(Box::new(blocks.clone())),
-            cost,
+            cost: of_cells.map_or(cost, |cells| cost.and(cells)),
             what: "a settlement law under each sleeper".into(),
             why: why.into(),
             error: ExpectedError { numerical: accuracy::expected(blocks, &outlook), ..of_law(scenario) },
-            runs: true,
-            refusals: Vec::new(),
+            runs: refusals.is_empty(),
+            refusals,
         })
     }
 }

@@ -4,6 +4,7 @@
 //! tier that cannot run the scene still returns its plan, so that physics rules can check the plan.
 
 mod cells;
+mod check;
 mod equilibrium;
 mod grains;
 mod law;
@@ -23,7 +24,7 @@ pub use rig::TestRig;
 use super::{Draft, Pass};
 use crate::diag::{Diagnostic, has_errors};
 use crate::graph::{Cost, Edge, ExpectedError, Node, Quantity, Rejected, Schedule};
-use crate::scenario;
+use crate::scenario::{self, Scenario};
 use crate::schema::Reads;
 
 /// A model of the track bed under the sleepers.
@@ -33,6 +34,11 @@ pub trait Tier: Send + Sync {
 
     /// Fields of the scene that the plan and its nodes read.
     fn reads(&self) -> &'static [&'static Reads] {
+        &[]
+    }
+
+    /// Fields that the plan and its nodes read besides, for this scene.
+    fn also_reads(&self, _: &Scenario) -> &'static [&'static Reads] {
         &[]
     }
 

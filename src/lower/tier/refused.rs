@@ -53,6 +53,12 @@ pub(super) fn of_traffic(scenario: &Scenario) -> Vec<Diagnostic> {
     found
 }
 
+/// Reasons why cells of grains cannot run the traffic of the scene; empty if they can.
+pub(super) fn of_cells(scenario: &Scenario) -> Vec<Diagnostic> {
+    let whole = [[f64::NEG_INFINITY, f64::INFINITY]];
+    of_traffic(scenario).into_iter().chain(ridden(scenario)).chain(other_grains(scenario, &whole)).collect()
+}
+
 /// Diagnostics for grains that change along a section with beds between these ends (m). A bed has the same grains from
 /// end to end; only the glue may change.
 pub(super) fn other_grains(scenario: &Scenario, beds: &[[f64; 2]]) -> Vec<Diagnostic> {
@@ -91,7 +97,7 @@ pub(super) fn few_sleepers(stretches: &[GrainStretch]) -> Option<Diagnostic> {
 }
 
 /// Diagnostic for `coupling = monolithic` with cells of grains.
-pub(super) fn ridden(scenario: &Scenario) -> Option<Diagnostic> {
+fn ridden(scenario: &Scenario) -> Option<Diagnostic> {
     scenario.solve.grains.monolithic.then(|| {
         let message =
             "`coupling = monolithic` cannot run on cells of grains: the rail does not connect the cells".to_owned();

@@ -39,6 +39,15 @@ pub struct Parts<'a> {
     pub beds: &'a Beds,
 }
 
+/// Settlement of a cell by the trains so far.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Checked {
+    /// m.
+    pub settled: f64,
+    /// Standard error from the trains that were left out, m.
+    pub error: f64,
+}
+
 /// Cells as the ground of a track.
 pub struct CellGround<'a> {
     parts: Parts<'a>,
@@ -81,6 +90,12 @@ impl<'a> CellGround<'a> {
         let Some(live) = &self.live else { return };
         let seats = book::supports(self.parts.cells, &live.layout, live.told());
         self.responses = Responses { revision: live.revision, seats };
+    }
+
+    /// The settlement of each cell.
+    pub fn checked(&self) -> Vec<Checked> {
+        let books = self.live.as_ref().map_or(&[] as &[Book], |live| &live.books);
+        books.iter().map(|book| Checked { settled: book.settled, error: book.error }).collect()
     }
 
     fn live(&self) -> Result<&Live, NodeError> {

@@ -55,6 +55,7 @@ pub enum Stage {
     Rail,
     StaticLoad,
     Passage,
+    Check,
     Rest,
 }
 
@@ -69,6 +70,7 @@ impl fmt::Display for Stage {
             Stage::Rail => "laying the rail, coming to rest",
             Stage::StaticLoad => "static load on the sleepers",
             Stage::Passage => "trains on grains",
+            Stage::Check => "cells that check the law",
             Stage::Rest => "coming to rest",
         })
     }

@@ -152,6 +152,8 @@ pub(in crate::lower::tier) struct PassingCells {
     pub headway_time: Option<f64>,
     /// Time between the first and the last wheel of a train, s.
     pub alone: f64,
+    /// Trains that each cell computes.
+    pub trains: f64,
 }
 
 /// Additional time of a train that runs alone, and of every train, s.
@@ -162,9 +164,36 @@ const BESIDE_EACH: f64 = 0.04;
 const FIRST_TRAINS: f64 = 12.0;
 const OTHER_TRAINS: f64 = 0.1;
 
-/// The estimate for cells of grains, within a factor of three: the number of trains that a cell leaves out is not known
-/// in advance.
-pub(in crate::lower::tier) fn cells_under_track(draft: &Draft<'_>, blocks: &Blocks, passing: PassingCells) -> Cost {
+/// Trains that a cell computes which carries sleepers.
+pub(in crate::lower::tier) fn trains_of_cells(blocks: &Blocks) -> f64 {
+    let all = trains_of(blocks);
+    let in_blocks = BlockWeight::Equal.between(blocks, 0, blocks.total);
+    all.min((FIRST_TRAINS + OTHER_TRAINS * (all - FIRST_TRAINS).max(0.0)).max(in_blocks))
+}
+
+/// Trains that a cell computes which checks a law in so many blocks.
+pub(in crate::lower::tier) fn trains_of_check(plan: &Blocks, blocks: u64) -> f64 {
+    trains_of(plan).min(FIRST_TRAINS + blocks as f64)
+}
+
+fn trains_of(blocks: &Blocks) -> f64 {
+    blocks.total as f64 / blocks.train.axles().max(1) as f64
+}
+
+/// The cost of all packings of a track, of the cost of one.
+pub(in crate::lower::tier) fn of_packings(scenario: &Scenario, of_one: Cost) -> Cost {
+    let Repeats { least: least_packings, most: packings } = scenario.solve.grains.repeats;
+    match of_one.work {
+        Work::Tests(work) => {
+            cost(f64::from(packings) * of_one.seconds_on_two_cores, TestWork { packings, least_packings, ..work })
+        }
+        Work::Passages(_) => of_one,
+    }
+}
+
+/// The estimate for the cells of one packing, within a factor of three: the number of trains that a cell leaves out is
+/// not known in advance.
+pub(in crate::lower::tier) fn cells_under_track(draft: &Draft<'_>, passing: PassingCells) -> Cost {
     let scenario = draft.scenario;
     let sections = scenario.track.sections.iter().enumerate().filter(|(_, section)| super::has_grains(section));
     let Some((number, section)) = sections.max_by(|(_, a), (_, b)| (a.end - a.start).total_cmp(&(b.end - b.start)))
@@ -177,17 +206,13 @@ pub(in crate::lower::tier) fn cells_under_track(draft: &Draft<'_>, blocks: &Bloc
     let time_step = TRACK_STEP * light;
     let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
     let building = BUILDING + if section.crib.is_some() { POURING } else { 0.0 };
-    let all = blocks.total as f64 / blocks.train.axles().max(1) as f64;
-    let in_blocks = BlockWeight::Equal.between(blocks, 0, blocks.total);
-    let trains = all.min((FIRST_TRAINS + OTHER_TRAINS * (all - FIRST_TRAINS).max(0.0)).max(in_blocks));
     let train = BESIDE_EACH + passing.headway_time.unwrap_or(passing.alone + BESIDE_ALONE);
-    let test_steps = passing.bays * (building + trains * train) / time_step;
+    let test_steps = passing.bays * (building + passing.trains * train) / time_step;
     let [cell_grains, cell_pebbles] = [grains + beside_grains, pebbles + beside_pebbles];
     let seconds = 0.5 * pebbles * packing_steps / PEBBLE_STEPS[0] + cell_pebbles * test_steps / TRACK_PEBBLE_STEPS;
     let [grains, pebbles] = [cell_grains, cell_pebbles].map(|count| passing.bays * count);
-    let Repeats { least: least_packings, most: packings } = scenario.solve.grains.repeats;
-    let work = TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings, least_packings };
-    cost(f64::from(packings) * seconds, work)
+    let (packings, least_packings) = (1, 1);
+    cost(seconds, TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings, least_packings })
 }
 
 fn pebbles_of(shape: &Shape) -> f64 {

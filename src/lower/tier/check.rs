@@ -1,0 +1,83 @@
+//! Cells of grains under some sleepers of tier `law`: while the law runs, their settlement is compared with it.
+
+use super::cells;
+use super::grains::{READS as GRAINS, headway};
+use super::refused::{self, waits};
+use super::rig::cost::{PassingCells, cells_under_track, trains_of_check};
+use crate::diag::{Diagnostic, Severity};
+use crate::graph::{BedPlan, CellPlan, CellsNode, Cost, Model, Node};
+use crate::lower::Draft;
+use crate::lower::bed::{self, BedUse, beds};
+use crate::schema::Reads;
+
+/// Fields that act only where cells check a law.
+pub(super) const READS: [&Reads; 3] = [&bed::READS, &GRAINS, &cells::CELLS];
+
+/// Cells that check a law, with their cost and the reasons against running them.
+pub(super) struct Check {
+    pub node: Option<Node>,
+    pub cost: Option<Cost>,
+    pub refusals: Vec<Diagnostic>,
+}
+
+/// The cells of a scene that asks for them; `blocks` is the number of blocks by the law.
+pub(super) fn check(draft: &Draft<'_>, blocks: u64) -> Check {
+    let scenario = draft.scenario;
+    let nothing = |refusals| Check { node: None, cost: None, refusals };
+    let (count, Some(plan)) = (scenario.solve.grains.check_cells, &draft.blocks) else { return nothing(Vec::new()) };
+    if count == 0 {
+        return nothing(Vec::new());
+    }
+    let beds = match beds(scenario, BedUse::Track) {
+        Ok(beds) if beds.is_empty() => return nothing(vec![no_grains()]),
+        Ok(beds) => beds,
+        Err(refusals) => return nothing(refusals.into_iter().map(|it| it.severity(Severity::Warning)).collect()),
+    };
+    let refusals: Vec<Diagnostic> = refused::of_cells(scenario);
+    let node = node(draft, beds, count as usize);
+    let (train, _) = plan.kind(0);
+    let passing = PassingCells {
+        bays: node.cells.iter().map(|cell| f64::from(cell.copies)).sum(),
+        headway_time: node.headway_time,
+        alone: train.wheel_base() / train.speed,
+        trains: trains_of_check(plan, blocks),
+    };
+    let cost = cells_under_track(draft, passing);
+    Check { node: Some(Node::new("check", Model::Check(node))), cost: Some(cost), refusals }
+}
+
+fn no_grains() -> Diagnostic {
+    let message = "`check_cells` asks for cells of grains, and no section has a layer of grains".to_owned();
+    waits(message, None, "leave out `check_cells`, or give a trackform `layers` of a `granular`")
+}
+
+/// A cell for each of `count` sleepers of every kind.
+fn node(draft: &Draft<'_>, beds: Vec<BedPlan>, count: usize) -> CellsNode {
+    let scenario = draft.scenario;
+    let mut kinds: Vec<(CellPlan, Vec<usize>)> = Vec::new();
+    let passed = (0..scenario.track.seats.len()).filter(|seat| cells::every_wheel_passes(draft, *seat));
+    for (seat, plan) in passed.filter_map(|seat| Some((seat, cells::plan(scenario, &beds, seat)?))) {
+        match kinds.iter_mut().find(|(kind, _)| kind.is_built_alike(&plan)) {
+            Some((_, seats)) => seats.push(seat),
+            None => kinds.push((plan, vec![seat])),
+        }
+    }
+    let mut seats: Vec<usize> = kinds.into_iter().flat_map(|(_, seats)| spread(draft, seats, count)).collect();
+    seats.sort_unstable();
+    let plans: Vec<CellPlan> = seats.iter().filter_map(|seat| cells::plan(scenario, &beds, *seat)).collect();
+    let mut cell_of = vec![None; scenario.track.seats.len()];
+    seats.iter().enumerate().for_each(|(cell, seat)| cell_of[*seat] = Some(cell));
+    let headway_time = headway(scenario).zip(draft.blocks.as_ref()).map(|(length, plan)| length / plan.train.speed);
+    cells::node(draft, beds, (plans, cell_of), headway_time)
+}
+
+/// The sleepers at even ranks of settlement by the law, from the largest to the smallest.
+fn spread(draft: &Draft<'_>, mut seats: Vec<usize>, count: usize) -> Vec<usize> {
+    let settled = |seat: usize| cells::measure(draft, seat);
+    seats.sort_by(|a, b| settled(*b).total_cmp(&settled(*a)).then(a.cmp(b)));
+    let last = seats.len().saturating_sub(1);
+    let rank = |at: usize| (at * last).checked_div(count - 1).unwrap_or(0);
+    let mut ranks: Vec<usize> = (0..count.min(seats.len())).map(rank).collect();
+    ranks.dedup();
+    ranks.into_iter().map(|rank| seats[rank]).collect()
+}
