@@ -77,7 +77,7 @@ fn no_answer_is_written_over_the_scene() {
         let output = trackbed(&[command, "scene.track", "--out", "./scene.track"]).current_dir(folder.path()).output();
         let (code, said) = told(output.unwrap());
         assert_ne!(code, Some(0));
-        assert!(said.contains("`./scene.track` is the scene itself; name another file after `--out`"), "{said}");
+        assert!(said.contains("`./scene.track` is the scene itself; name another file"), "{said}");
         assert_eq!(std::fs::read(&scene).unwrap(), text);
     }
 }

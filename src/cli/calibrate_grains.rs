@@ -10,6 +10,7 @@ use crate::diag::{Code, Diagnostic, and_list};
 use crate::execute::{self, RunError};
 use crate::graph::{Clock, Graph};
 use crate::nodes::{Builders, NodeError};
+use crate::report::{Fitted, specimens_svg};
 use crate::scenario::{law_argument, law_form};
 use crate::solvers::settlement::Form;
 use crate::solvers::settlement::fit::FitError;
@@ -39,6 +40,9 @@ pub(super) struct GrainArguments {
     /// Write the laws to this file, which a scene uses with `use`.
     #[arg(long, value_name = "FILE", conflicts_with = "measured")]
     out: Option<PathBuf>,
+    /// Write a picture of the specimens and the laws to this file.
+    #[arg(long, value_name = "FILE.svg", conflicts_with = "measured")]
+    picture: Option<PathBuf>,
     /// Where packed beds and measured specimens are kept, by what made them.
     #[arg(long, value_name = "DIR", env = "TRACKBED_CACHE")]
     cache: Option<PathBuf>,
@@ -50,6 +54,8 @@ struct Found {
     /// The seat of the cell.
     place: String,
     curves: Vec<Curve>,
+    /// The specimen whose loads change.
+    check: Curve,
     surrogate: Surrogate,
 }
 
@@ -96,8 +102,10 @@ fn named_as_module(out: &Path) -> Result<(), String> {
 
 pub(super) fn run(scene: &SceneArguments, asked: &GrainArguments, format: Format) -> Outcome {
     let is_module = |out: &Path| scene.is_beside(out).and_then(|()| named_as_module(out));
-    if let Some(Err(why)) = asked.out.as_deref().map(is_module) {
-        terminal::error(&why);
+    let asked_for = [asked.out.as_deref().map(is_module), asked.picture.as_deref().map(|it| scene.is_beside(it))];
+    let wrong: Vec<String> = asked_for.into_iter().flatten().filter_map(Result::err).collect();
+    if !wrong.is_empty() {
+        wrong.iter().for_each(|why| terminal::error(why));
         return Outcome::Usage;
     }
     let on_cells = Override { path: "solve.substructure".into(), value: "cells".into() };
@@ -186,7 +194,7 @@ fn laws(graph: &Graph, asked: &GrainArguments) -> Result<Vec<Found>, Refused> {
         let place =
             graph.track().and_then(|track| track.seats.get(seat)).map_or(String::new(), |seat| seat.name.clone());
         let surrogate = fitted.map_err(|error| Refused::Fit { section: (*section).to_owned(), error })?;
-        found.push(Found { name: named(section, &found), place, curves, surrogate });
+        found.push(Found { name: named(section, &found), place, curves, check, surrogate });
     }
     Ok(found)
 }
@@ -209,11 +217,15 @@ fn named(section: &str, before: &[Found]) -> String {
 fn told(found: &[Found], scene: &SceneArguments, asked: &GrainArguments, format: Format) -> Outcome {
     let file = file_name(&scene.file);
     let laws: Vec<String> = found.iter().map(|found| found.declaration(&file)).collect();
-    if let Some(out) = &asked.out
-        && let Err(why) = scene.write_beside(out, laws.join("\n").as_bytes())
-    {
-        terminal::error(&why);
-        return Outcome::Failed;
+    let files = [
+        asked.out.as_ref().map(|out| (out, laws.join("\n"))),
+        asked.picture.as_ref().map(|out| (out, specimens_svg(&found.iter().map(Found::drawn).collect::<Vec<_>>()))),
+    ];
+    for (out, text) in files.into_iter().flatten() {
+        if let Err(why) = scene.write_beside(out, text.as_bytes()) {
+            terminal::error(&why);
+            return Outcome::Failed;
+        }
     }
     match format {
         Format::Json => {
@@ -292,6 +304,12 @@ impl Found {
             );
         }
         out + "\n"
+    }
+
+    /// The law and its specimens for a picture.
+    fn drawn(&self) -> Fitted<'_> {
+        let title = format!("law {}: grains under sleeper {}", self.name, self.place);
+        Fitted { title, law: &self.surrogate.law, specimens: &self.curves, check: &self.check }
     }
 
     /// Stiffness of the grains of the specimens without a void, N/m: their mean.

@@ -80,7 +80,7 @@ impl SceneArguments {
     pub fn is_beside(&self, out: &Path) -> Result<(), String> {
         let is_scene = self.file.canonicalize().is_ok_and(|scene| out.canonicalize().is_ok_and(|out| out == scene));
         if is_scene {
-            return Err(format!("`{}` is the scene itself; name another file after `--out`", out.display()));
+            return Err(format!("`{}` is the scene itself; name another file", out.display()));
         }
         let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
         if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {

@@ -33,7 +33,7 @@ pub(super) fn check(draft: &Draft<'_>, blocks: u64) -> Check {
         Ok(beds) => beds,
         Err(refusals) => return nothing(refusals.into_iter().map(|it| it.severity(Severity::Warning)).collect()),
     };
-    let refusals: Vec<Diagnostic> = refused::of_cells(scenario);
+    let refusals: Vec<Diagnostic> = refused::of_check(scenario);
     let node = node(draft, beds, count as usize);
     let (train, _) = plan.kind(0);
     let passing = PassingCells {
@@ -46,6 +46,12 @@ pub(super) fn check(draft: &Draft<'_>, blocks: u64) -> Check {
     Check { node: Some(Node::new("check", Model::Check(node))), cost: Some(cost), refusals }
 }
 
+/// `, checked by cells of grains under 3 sleepers`
+pub(super) fn told(node: &Node) -> String {
+    let count = if let Model::Check(cells) = &node.model { cells.cells.len() } else { 0 };
+    format!(", checked by cells of grains under {count} sleeper{}", if count == 1 { "" } else { "s" })
+}
+
 fn no_grains() -> Diagnostic {
     let message = "`check_cells` asks for cells of grains, and no section has a layer of grains".to_owned();
     waits(message, None, "leave out `check_cells`, or give a trackform `layers` of a `granular`")
@@ -55,8 +61,8 @@ fn no_grains() -> Diagnostic {
 fn node(draft: &Draft<'_>, beds: Vec<BedPlan>, count: usize) -> CellsNode {
     let scenario = draft.scenario;
     let mut kinds: Vec<(CellPlan, Vec<usize>)> = Vec::new();
-    let passed = (0..scenario.track.seats.len()).filter(|seat| cells::every_wheel_passes(draft, *seat));
-    for (seat, plan) in passed.filter_map(|seat| Some((seat, cells::plan(scenario, &beds, seat)?))) {
+    let plans = (0..scenario.track.seats.len()).filter_map(|seat| Some((seat, cells::plan(scenario, &beds, seat)?)));
+    for (seat, plan) in plans {
         match kinds.iter_mut().find(|(kind, _)| kind.is_built_alike(&plan)) {
             Some((_, seats)) => seats.push(seat),
             None => kinds.push((plan, vec![seat])),
@@ -71,8 +77,11 @@ fn node(draft: &Draft<'_>, beds: Vec<BedPlan>, count: usize) -> CellsNode {
     cells::node(draft, beds, (plans, cell_of), headway_time)
 }
 
-/// The sleepers at even ranks of settlement by the law, from the largest to the smallest.
-fn spread(draft: &Draft<'_>, mut seats: Vec<usize>, count: usize) -> Vec<usize> {
+/// The sleepers at even ranks of settlement by the law, from the largest to the smallest, of those that every wheel
+/// passes if there are any.
+fn spread(draft: &Draft<'_>, seats: Vec<usize>, count: usize) -> Vec<usize> {
+    let passed: Vec<usize> = seats.iter().copied().filter(|seat| cells::every_wheel_passes(draft, *seat)).collect();
+    let mut seats = if passed.is_empty() { seats } else { passed };
     let settled = |seat: usize| cells::measure(draft, seat);
     seats.sort_by(|a, b| settled(*b).total_cmp(&settled(*a)).then(a.cmp(b)));
     let last = seats.len().saturating_sub(1);

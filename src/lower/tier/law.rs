@@ -69,6 +69,8 @@ impl Tier for SettlementLaws {
         let cost = cost::of_blocks(&node, blocks, &outlook);
         let Check { node: cells, cost: of_cells, refusals } = check::check(draft, outlook.blocks);
         let laws = [Node::new("track", Model::Track(Box::new(node))), Node::new("substructure", Model::Law(law))];
+        let checked = cells.as_ref().map_or(String::new(), check::told);
+        let what = format!("a settlement law under each sleeper{checked}");
         let nodes: Vec<Node> = laws.into_iter().chain(cells).collect();
         let stated = "the scene gives the stiffness of its supports";
         let why = if stands_on_layers(scenario) { "the layers give the stiffness of the supports" } else { stated };
@@ -77,7 +79,7 @@ impl Tier for SettlementLaws {
             nodes,
             schedule: Schedule::Blocks(Box::new(blocks.clone())),
             cost: of_cells.map_or(cost, |cells| cost.and(cells)),
-            what: "a settlement law under each sleeper".into(),
+            what,
             why: why.into(),
             error: ExpectedError { numerical: accuracy::expected(blocks, &outlook), ..of_law(scenario) },
             runs: refusals.is_empty(),

@@ -8,6 +8,15 @@ use crate::units::number;
 
 /// Reasons why a track on grains cannot run the traffic of the scene; empty if it can.
 pub(super) fn of_traffic(scenario: &Scenario) -> Vec<Diagnostic> {
+    let tamped = (!scenario.tampings.is_empty()).then(|| {
+        let message = "grains cannot be tamped in this version";
+        waits(message.into(), scenario.solve.grains.tier.origin.span(), "leave the `tamping` out")
+    });
+    of_trains(scenario).into_iter().chain(tamped).collect()
+}
+
+/// Reasons why the trains of the scene cannot run over grains; empty if they can.
+fn of_trains(scenario: &Scenario) -> Vec<Diagnostic> {
     let grains = &scenario.solve.grains;
     let mut found = Vec::new();
     let Some(Loading::Traffic(traffic)) = &scenario.loading else {
@@ -21,10 +30,6 @@ pub(super) fn of_traffic(scenario: &Scenario) -> Vec<Diagnostic> {
     if traffic.is_mixed() {
         let message = "trains of several kinds cannot run over grains in this version";
         found.push(waits(message.into(), traffic.total.origin.span(), "name one train in `traffic`"));
-    }
-    if !scenario.tampings.is_empty() {
-        let message = "grains cannot be tamped in this version";
-        found.push(waits(message.into(), grains.tier.origin.span(), "leave the `tamping` out"));
     }
     if scenario.track.bed.base == Base::Quiet {
         found.push(waits(
@@ -55,9 +60,17 @@ pub(super) fn of_traffic(scenario: &Scenario) -> Vec<Diagnostic> {
 
 /// Reasons why cells of grains cannot run the traffic of the scene; empty if they can.
 pub(super) fn of_cells(scenario: &Scenario) -> Vec<Diagnostic> {
-    let whole = [[f64::NEG_INFINITY, f64::INFINITY]];
-    of_traffic(scenario).into_iter().chain(ridden(scenario)).chain(other_grains(scenario, &whole)).collect()
+    of_traffic(scenario).into_iter().chain(ridden(scenario)).chain(other_grains(scenario, &WHOLE)).collect()
 }
+
+/// Reasons why cells of grains cannot check a law; empty if they can. Tamping ends the check, and what has no effect on
+/// the law is not used.
+pub(super) fn of_check(scenario: &Scenario) -> Vec<Diagnostic> {
+    of_trains(scenario).into_iter().chain(other_grains(scenario, &WHOLE)).collect()
+}
+
+/// The whole track, m.
+const WHOLE: [[f64; 2]; 1] = [[f64::NEG_INFINITY, f64::INFINITY]];
 
 /// Diagnostics for grains that change along a section with beds between these ends (m). A bed has the same grains from
 /// end to end; only the glue may change.

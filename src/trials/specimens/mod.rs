@@ -11,4 +11,4 @@ mod surrogate;
 
 pub use bench::{Bench, Curve, kinds_of_cells};
 pub use program::{Ranges, Trial};
-pub use surrogate::{LeftOut, Surrogate, fit_curves};
+pub use surrogate::{LeftOut, Surrogate, by_law, fit_curves};

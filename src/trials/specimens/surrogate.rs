@@ -85,7 +85,7 @@ pub fn fit_curves(curves: &[Curve], check: &Curve, reference: f64) -> Result<Sur
         Ok(LeftOut::new(curve, &law, &other, largest))
     };
     let (early, _) = fitted(&all, reference, curves.iter().map(|curve| curve.settled.len() / 2).min().unwrap_or(0))?;
-    let at_end = |curve: &Curve| last(&predicted(&early, curve)) - last(&curve.settled);
+    let at_end = |curve: &Curve| last(&by_law(&early, curve)) - last(&curve.settled);
     let peaks = || curves.iter().flat_map(|curve| curve.peaks.iter().flatten());
     let forces = || peaks().map(|peak| peak.force);
     Ok(Surrogate {
@@ -94,7 +94,7 @@ pub fn fit_curves(curves: &[Curve], check: &Curve, reference: f64) -> Result<Sur
         rms: found.rms / largest,
         left_out: curves.iter().enumerate().map(left_out).collect::<Result<_, _>>()?,
         later: root_mean_square(curves.iter().map(at_end)) / largest,
-        check: difference(&predicted(&law, check), &check.settled) / largest,
+        check: difference(&by_law(&law, check), &check.settled) / largest,
         loads: [forces().fold(f64::INFINITY, f64::min), forces().fold(0.0, f64::max)],
         void: peaks().map(|peak| peak.void).fold(0.0, f64::max),
         axles: curves.iter().map(|curve| curve.peaks.iter().map(Vec::len).sum::<usize>()).min().unwrap_or(0) as u64,
@@ -105,13 +105,13 @@ impl LeftOut {
     fn new(curve: &Curve, law: &Power, others: &Power, largest: f64) -> LeftOut {
         let first = curve.peaks.first().map_or(&[] as &[Peak], Vec::as_slice);
         let mean = |of: fn(&Peak) -> f64| first.iter().map(of).sum::<f64>() / first.len().max(1) as f64;
-        let prediction = predicted(others, curve);
+        let prediction = by_law(others, curve);
         LeftOut {
             trial: curve.trials.first().copied().unwrap_or(Trial { factor: 1.0, void: 0.0 }),
             force: mean(|peak| peak.force),
             void: mean(|peak| peak.void),
             settled: last(&curve.settled),
-            fitted: last(&predicted(law, curve)),
+            fitted: last(&by_law(law, curve)),
             predicted: last(&prediction),
             error: difference(&prediction, &curve.settled) / largest,
         }
@@ -130,13 +130,13 @@ fn fitted(curves: &[&Curve], reference: f64, trains: usize) -> Result<(Power, Fi
         |values: &[f64]| Power { a: values[0], m: values[1], b: values[2], g: values[3], reference_force: reference };
     let found = fit(&parameters, &measured, |values| {
         let law = law(values);
-        curves.iter().flat_map(|curve| predicted(&law, curve).into_iter().take(trains)).collect()
+        curves.iter().flat_map(|curve| by_law(&law, curve).into_iter().take(trains)).collect()
     })?;
     Ok((law(&found.values), found))
 }
 
 /// Settlement after each train of a specimen by a law, m.
-fn predicted(law: &Power, curve: &Curve) -> Vec<f64> {
+pub fn by_law(law: &Power, curve: &Curve) -> Vec<f64> {
     let mut support = Law { form: Form::Power(*law), cycle_per: CyclePer::Axle }.fresh();
     let after = |peaks: &Vec<Peak>| {
         support.load(peaks, 1);
@@ -173,7 +173,7 @@ mod tests {
             .map(|trial| vec![Peak { force: 37e3 * trial.factor, deflection: 1e-3, void: trial.void }; 4])
             .collect();
         let mut curve = Curve { trials, peaks, settled: Vec::new(), stiffness: None };
-        curve.settled = predicted(&TRUE, &curve);
+        curve.settled = by_law(&TRUE, &curve);
         for (n, settled) in curve.settled.iter_mut().enumerate() {
             *settled *= 1.0 + scatter * ((n as f64 * 0.618).fract() - 0.5);
         }
