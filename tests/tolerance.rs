@@ -1,8 +1,9 @@
 //! What the planner makes of the tolerance and the budget of a scene, and that a run keeps to it.
 
+use std::ops::ControlFlow;
 use trackbed::check::{NoModules, Override};
 use trackbed::diag::Code;
-use trackbed::execute::execute;
+use trackbed::execute::{Checkpoint, Comparison, Event, Executor, Listener, execute};
 use trackbed::graph::{Decision, Graph, Schedule, Update};
 use trackbed::results::{RunRecorder, SleeperRow};
 use trackbed::{Compiled, compile};
@@ -133,4 +134,75 @@ fn a_plan_that_misses_its_tolerance_says_what_would_keep_it() {
     assert!(help.contains("`substructure = full` has an expected error of 1 %"), "{help}");
     assert_eq!(told(&["solve.budget = 0.2 min", "solve.tolerance = 50 %"]), None);
     assert_eq!(told(&["solve.budget = 0.2 min", "solve.substructure = law"]), None, "the scene has decided");
+}
+
+/// What a run tells of its comparison with a finer passage.
+#[derive(Default)]
+struct Heard {
+    compared: Vec<Comparison>,
+    /// Settlement of every seat after each block, m.
+    settlements: Vec<Vec<f64>>,
+    stop_after: Option<usize>,
+    kept: Option<Checkpoint>,
+}
+
+impl Listener for Heard {
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Compared(compared) => self.compared.push(**compared),
+            Event::Block { block: Some(_), after, .. } => self.settlements.push(after.to_vec()),
+            Event::Between(between) if self.stop_after == Some(self.settlements.len()) => {
+                self.kept = Some(between.checkpoint().unwrap());
+                return ControlFlow::Break(());
+            }
+            _ => {}
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+fn heard(graph: &Graph, stop_after: Option<usize>, from: Option<Checkpoint>) -> Heard {
+    let mut heard = Heard { stop_after, ..Heard::default() };
+    Executor::default().run(graph, &mut heard, from).unwrap();
+    heard
+}
+
+/// The same plan with another limit of the comparison.
+fn with_limit(mut graph: Graph, limit: f64) -> Graph {
+    let Schedule::Blocks(blocks) = &mut graph.schedule else { panic!("trains run") };
+    blocks.compared.as_mut().expect("compared").limit = limit;
+    graph
+}
+
+#[test]
+fn only_passages_that_the_planner_chose_are_compared() {
+    let compared = |edits: &[&str]| plan(edits).blocks().unwrap().compared;
+    assert!(compared(&[]).is_none());
+    let found = compared(&["solve.tolerance = 5 %"]).expect("compared");
+    assert_eq!((found.after, found.limit), (20, 0.005));
+    assert!(compared(&["solve.tolerance = 5 %", "solve.elements_per_bay = 8", "solve.time_step = 0.05 ms"]).is_none());
+}
+
+#[test]
+fn a_passage_within_the_limit_changes_nothing_and_one_beyond_it_refines_the_run() {
+    let graph = plan(&["solve.tolerance = 5 %"]);
+    let planned = heard(&graph, None, None);
+    let [Comparison { axles, difference, .. }] = planned.compared[..] else { panic!("{:?}", planned.compared) };
+    assert!(axles >= 20 && difference > 0.0 && difference < 0.005, "{axles} {difference}");
+    let mut alone = graph.clone();
+    let Schedule::Blocks(blocks) = &mut alone.schedule else { panic!("trains run") };
+    blocks.compared = None;
+    assert_eq!(heard(&alone, None, None).settlements, planned.settlements);
+
+    let strict = with_limit(graph, 0.5 * difference);
+    let refined = heard(&strict, None, None);
+    assert!(refined.compared[0].refines());
+    let before = planned.settlements.iter().zip(&refined.settlements).take_while(|(a, b)| a == b).count();
+    assert!(before >= 1 && before < planned.settlements.len(), "it refines on the way: {before}");
+    // a run that was stopped after the comparison goes on with the finer passages
+    let begun = heard(&strict, Some(before + 1), None);
+    let kept = serde_json::to_string(&begun.kept.expect("stopped")).unwrap();
+    let resumed = heard(&strict, None, Some(serde_json::from_str(&kept).unwrap()));
+    assert!(resumed.compared.is_empty(), "compared once");
+    assert_eq!([begun.settlements, resumed.settlements].concat(), refined.settlements);
 }

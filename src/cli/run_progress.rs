@@ -1,9 +1,10 @@
 //! How far a run is, on a terminal or in a line a minute.
 
-use super::{pack, progress};
+use super::{pack, progress, terminal};
 use crate::execute::{Checkpoint, Event, Listener};
 use crate::graph::{Block, BlockWeight, Blocks, Clock, Graph, Schedule};
 use crate::nodes::Stage;
+use crate::results::compared_passage;
 use crate::solvers::granular::packing::Progress;
 use std::ops::ControlFlow;
 
@@ -84,6 +85,9 @@ impl Way {
 impl Listener for Shown {
     fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
         match event {
+            Event::Compared(compared) if compared.refines() => {
+                terminal::note(&format!("{}\n", compared_passage(compared)));
+            }
             Event::Packing(progress) if self.tests => pack::show_share(&mut self.bar, progress.share),
             Event::Packing(progress) => self.stage(progress),
             Event::Packed { found, .. } => {

@@ -2,7 +2,7 @@
 
 use crate::diag::has_errors;
 use crate::execute::{Event, Executor, Listener};
-use crate::graph::Graph;
+use crate::graph::{Graph, Schedule};
 use crate::lower::Planner;
 use crate::lower::memo::Memo;
 use crate::scenario::{Given, Scenario, Tier, TimeStep, Update};
@@ -44,7 +44,10 @@ pub fn settlement(planner: &Planner, scenario: &Scenario) -> Option<Vec<f64>> {
     by_law.records.clear();
     let lowered = planner.lower(&by_law);
     let runs = |graph: &Graph| graph.runs && graph.cost.seconds <= LONGEST && !has_errors(&lowered.diagnostics);
-    let graph = lowered.graph.as_ref().filter(|graph| runs(graph))?.clone();
+    let mut graph = lowered.graph.as_ref().filter(|graph| runs(graph))?.clone();
+    if let Schedule::Blocks(blocks) = &mut graph.schedule {
+        blocks.compared = None;
+    }
     SETTLED.get(graph, run)
 }
 

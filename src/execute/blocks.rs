@@ -1,5 +1,6 @@
 //! The schedule of blocks: static state, passage, settlement, block by block, until the axles are done (paper, Fig. 3).
 
+use super::comparing::Comparison;
 use super::event::{Between, Checkpoint, Event, Listener, ScheduleState, tell_of_trains, tell_stage};
 use super::exchange::{Exchange, Work};
 use super::machine::{Ending, Machine, RunError};
@@ -21,7 +22,7 @@ pub(super) fn run(
 ) -> Result<Ending, RunError> {
     let at = |axles: u64| move |cause: NodeError| RunError::node(Clock::Axles(axles), cause);
     let from = restored(from, blocks)?;
-    let Restored { blocks: done, axles, control, .. } = from;
+    let Restored { blocks: done, axles, control, compared, .. } = from;
     let begun = machine
         .track_on_ground_that(|ground| match &from.ground {
             Some(state) => ground.restore(state),
@@ -34,7 +35,10 @@ pub(super) fn run(
     };
     let runs = machine.graph.track().map(settling).unwrap_or_default();
     let pair = Pair { blocks, track, ground, check, control, runs };
-    let mut run = Run { pair, done: done as usize, listener };
+    let mut run = Run { pair, done: done as usize, compared, listener };
+    if compared.is_some_and(|compared| compared.refines()) {
+        run.pair.track = run.pair.track.finer().map_err(at(axles))?;
+    }
     Ok(match run.go(axles)? {
         ControlFlow::Continue(()) => Ending::Finished,
         ControlFlow::Break(()) => Ending::Stopped,
@@ -52,16 +56,18 @@ pub(super) struct Restored {
     /// The state of the ground, and of the cells that check it; `None` at the beginning.
     pub ground: Option<serde_json::Value>,
     check: Option<serde_json::Value>,
+    /// The comparison of a passage with a finer one, if it was due before.
+    compared: Option<Comparison>,
 }
 
 /// The state in a checkpoint. A checkpoint beyond the end of the schedule belongs to another schedule.
 pub(super) fn restored(from: Option<Checkpoint>, plan: &Blocks) -> Result<Restored, RunError> {
     match from.map(|checkpoint| (checkpoint.clock, checkpoint.state)) {
         None => Ok(Restored::default()),
-        Some((Clock::Axles(axles), ScheduleState::Blocks { blocks, control, ground, check }))
+        Some((Clock::Axles(axles), ScheduleState::Blocks { blocks, control, ground, check, compared }))
             if axles <= plan.total && blocks as u64 <= axles =>
         {
-            Ok(Restored { blocks: blocks as u64, axles, control, ground: Some(ground), check })
+            Ok(Restored { blocks: blocks as u64, axles, control, ground: Some(ground), check, compared })
         }
         Some(_) => Err(RunError::ForeignCheckpoint),
     }
@@ -112,10 +118,12 @@ pub(super) fn bearable(axles: u64, settlement: &[f64]) -> Result<(), RunError> {
 }
 
 /// A run of blocks on its way.
-struct Run<'a, 'l> {
-    pair: Pair<'a>,
+pub(super) struct Run<'a, 'l> {
+    pub pair: Pair<'a>,
     /// Blocks done.
     done: usize,
+    /// The comparison of a passage with a finer one.
+    pub compared: Option<Comparison>,
     listener: &'l mut dyn Listener,
 }
 
@@ -210,6 +218,11 @@ impl Run<'_, '_> {
             work.add(&here, Work::default());
             here = going!(self.tamp(here.axles));
         }
+        if !self.pair.ground.is_underway()
+            && let Some(compared) = self.compare(&mut here, &mut work)?
+        {
+            tell!(self, Event::Compared(&compared));
+        }
         let revision = self.pair.ground.responses().revision;
         if self.pair.blocks.recorded.binary_search(&here.axles).is_ok() {
             self.pair.ground.record(here.axles);
@@ -252,10 +265,11 @@ impl Run<'_, '_> {
         self.done += 1;
         tell!(self, Event::Laws { axles, settlement: &self.pair.ground.settlement_by_law() });
         going!(self.tell_check(axles));
-        let (blocks, control, ground, check) = (self.done, self.pair.control, &self.pair.ground, &self.pair.check);
+        let (blocks, control, compared) = (self.done, self.pair.control, self.compared);
+        let (ground, check) = (&self.pair.ground, &self.pair.check);
         let state = || {
             let check = check.as_ref().map(CheckingCells::save).transpose()?;
-            let state = ScheduleState::Blocks { blocks, control, ground: ground.save()?, check };
+            let state = ScheduleState::Blocks { blocks, control, ground: ground.save()?, check, compared };
             Ok(Checkpoint { clock: Clock::Axles(axles), state })
         };
         tell!(self, Event::Between(Between { is_last: false, state: &state }));

@@ -1,6 +1,6 @@
 //! Events of a run and their listeners: one type of event for every schedule.
 
-use super::BlockMeasures;
+use super::{BlockMeasures, Comparison};
 use crate::graph::{BedRecipe, Block, Clock, Control, Runner};
 use crate::nodes::{
     BedUnderTrack, Checked, NodeError, PassageOutcome, Stage, TestState, Tested, Told, Unloaded, VolumeSample,
@@ -39,6 +39,8 @@ pub enum Event<'a> {
     /// Settlement of every seat by each law, the driving one first, m: as built, after each block and after each
     /// tamping.
     Laws { axles: u64, settlement: &'a [Vec<f64>] },
+    /// A passage was compared with a finer one.
+    Compared(&'a Comparison),
     /// Cells of grains have passed the trains so far: by seat, the settlement that trains have added, m, and of its
     /// cell.
     Checked { axles: u64, seats: &'a [usize], settled: &'a [f64], cells: &'a [Checked] },
@@ -74,7 +76,7 @@ pub(super) fn tell_of_trains(
         Told::Beds(beds) => listener.hear(&Event::Beds { axles, under_train: true, beds: &beds }),
         Told::State(ground) => {
             let state = || {
-                let state = ScheduleState::Blocks { blocks, control, ground: ground()?, check: None };
+                let state = ScheduleState::Blocks { blocks, control, ground: ground()?, check: None, compared: None };
                 Ok(Checkpoint { clock: Clock::Axles(axles), state })
             };
             listener.hear(&Event::Between(Between { is_last: false, state: &state }))
@@ -120,6 +122,9 @@ pub enum ScheduleState {
         /// The state of the cells that check the ground.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         check: Option<serde_json::Value>,
+        /// The comparison of a passage with a finer one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        compared: Option<Comparison>,
     },
     /// Tests that are over, and the one under way.
     Tests { done: Vec<Tested>, running: Option<Box<TestState>> },

@@ -4,6 +4,7 @@
 //! end the run.
 
 mod blocks;
+mod comparing;
 mod equilibrium;
 mod event;
 mod exchange;
@@ -18,6 +19,7 @@ mod step;
 mod tests_of_beds;
 mod timed;
 
+pub use comparing::Comparison;
 pub use equilibrium::at_rest;
 pub use event::{Between, Both, Checkpoint, Event, Listener, ScheduleState};
 pub use executor::{Custom, Executor};

@@ -67,10 +67,14 @@ impl Pair<'_> {
         wanted.unwrap_or_else(|| self.blocks.trains_left(axles))
     }
 
+    /// The forces of a passage that ground and cells need.
+    pub fn forces(&self) -> Forces {
+        if self.check.is_some() { Forces::Histories } else { self.ground.forces() }
+    }
+
     pub fn ensure(&self, exchange: &mut Exchange, runners: &[Runner]) -> Result<(), RunError> {
         let clock = Clock::Axles(exchange.axles);
-        let forces = if self.check.is_some() { Forces::Histories } else { self.ground.forces() };
-        let done = exchange.ensure(&self.track, runners, forces);
+        let done = exchange.ensure(&self.track, runners, self.forces());
         done.map_err(|cause| RunError::node(clock, cause))
     }
 

@@ -88,8 +88,13 @@ pub(super) fn run(
         (axles, done) = (axles + block.axles, done + 1);
         let state = || {
             let ground = ground.save()?;
-            let state =
-                ScheduleState::Blocks { blocks: done as usize, control: Control::default(), ground, check: None };
+            let state = ScheduleState::Blocks {
+                blocks: done as usize,
+                control: Control::default(),
+                ground,
+                check: None,
+                compared: None,
+            };
             Ok(Checkpoint { clock: Clock::Axles(axles), state })
         };
         let between = Event::Between(Between::new(false, &state));

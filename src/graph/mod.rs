@@ -36,7 +36,8 @@ pub use port::{Edge, Fault, Ports, faults};
 pub use quantity::{Basis, Quantity, Rate};
 pub use record::{History, InVolume, Record};
 pub use schedule::{
-    AdaptiveSteps, Block, Blocks, Clock, LoadedPart, PassagePlan, PointLoad, Runner, Schedule, Tamping, Tests, Update,
+    AdaptiveSteps, Block, Blocks, Clock, Compared, LoadedPart, PassagePlan, PointLoad, Runner, Schedule, Tamping,
+    Tests, Update,
 };
 pub use track::{Responses, TrackFoot, TrackNode, TrackSeat, TrackSection};
 pub use train::{Bogie, Runs, Train};

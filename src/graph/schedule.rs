@@ -84,6 +84,18 @@ pub struct Blocks {
     pub stops: Vec<u64>,
     /// Axles of the whole run.
     pub total: u64,
+    /// Comparison with a finer passage on the way; `None` if the scene states elements and steps.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compared: Option<Compared>,
+}
+
+/// Comparison of a passage with one that has twice the elements and shorter steps.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Compared {
+    /// It is due at the first exchange after so many axles.
+    pub after: u64,
+    /// Difference of the settlement by one train / its largest settlement, above which the finer passages are taken.
+    pub limit: f64,
 }
 
 /// Number of axles between two exchanges of forces and settlement.
@@ -146,6 +158,9 @@ pub struct AdaptiveSteps {
     pub halvings: u32,
 }
 
+/// Tolerance of steps half as long / tolerance of the steps: see [`PassagePlan::usual_step`].
+const FINER: f64 = 0.17;
+
 /// Distance that a wheel must run before and behind a seat to count as passing it, m: about half the width of a
 /// deflection bowl.
 const APPROACH: f64 = 1.0;
@@ -163,6 +178,18 @@ impl PassagePlan {
         match direction {
             Direction::Backward => (self.right - base, self.left),
             Direction::Forward => (self.left + base, self.right),
+        }
+    }
+
+    /// The same with steps about half as long.
+    #[must_use]
+    pub fn finer(self) -> PassagePlan {
+        match self.adaptive {
+            Some(AdaptiveSteps { tolerance, halvings }) => {
+                let adaptive = AdaptiveSteps { tolerance: FINER * tolerance, halvings: halvings + 1 };
+                PassagePlan { adaptive: Some(adaptive), ..self }
+            }
+            None => PassagePlan { time_step: 0.5 * self.time_step, sample_every: 2 * self.sample_every, ..self },
         }
     }
 
@@ -198,6 +225,13 @@ pub struct Runner {
 }
 
 impl Blocks {
+    /// The same with finer passages.
+    #[must_use]
+    pub fn finer(&self) -> Blocks {
+        let others = self.others.iter().map(|(train, plan)| (train.clone(), plan.finer())).collect();
+        Blocks { passage: self.passage.finer(), others, ..self.clone() }
+    }
+
     /// Chainages between which every wheel of the leading train passes every seat.
     pub fn passed(&self) -> std::ops::Range<f64> {
         self.passage.passed(&self.train)

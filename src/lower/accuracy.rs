@@ -6,7 +6,7 @@
 use super::dry_run::as_built;
 use super::outlook::Outlook;
 use super::{Draft, Pass, track};
-use crate::graph::{Blocks, PassagePlan, Rejected, Update};
+use crate::graph::{Blocks, Compared, PassagePlan, Rejected, Update};
 use crate::scenario::{Beam, Loading, Origin, Scenario, TimeStep};
 use crate::schema::Reads;
 use crate::units::{number, percent, rounded_down};
@@ -27,6 +27,11 @@ const OF_STEPS: f64 = 0.02;
 const LONGEST: f64 = 4e-4;
 /// The longest step at any tolerance, s: an eighth of the period of a sleeper between pad and support.
 const ANY_LONGEST: f64 = 8e-4;
+
+/// Axles / all axles after which a passage is compared with a finer one, when sleepers hang already; difference of both
+/// / tolerance above which the finer ones are taken.
+const OF_AXLES: f64 = 0.1;
+const OF_PASSAGES: f64 = 0.1;
 
 /// How often the error limit of a block is halved until the expected error of the run is within the tolerance.
 const HALVINGS: u32 = 6;
@@ -99,6 +104,38 @@ impl Pass for Mesh {
         let rejected = Rejected::new(format!("{fine} elements per bay"), "they change forces by less than 0.2 %");
         let why = "the scene states a `tolerance`, and the rail bends without shear on a smooth level";
         draft.decide_against(self.name(), format!("{elements} elements per bay"), why, vec![rejected]);
+    }
+
+    fn without(&self) -> Option<fn(&mut Draft<'_>)> {
+        Some(|_| ())
+    }
+}
+
+/// Compares a passage on the way with a finer one.
+pub(super) struct Compare;
+
+impl Pass for Compare {
+    fn name(&self) -> &'static str {
+        "compare"
+    }
+
+    fn acts(&self, scenario: &Scenario) -> bool {
+        Mesh::elements(scenario).is_some() || steps(scenario).is_some()
+    }
+
+    fn run(&self, draft: &mut Draft<'_>) {
+        if !self.acts(draft.scenario) {
+            return;
+        }
+        let Some(blocks) = &mut draft.blocks else { return };
+        let (after, limit) =
+            ((OF_AXLES * blocks.total as f64) as u64, OF_PASSAGES * *draft.scenario.solve.grains.tolerance);
+        blocks.compared = Some(Compared { after, limit });
+        let what =
+            format!("a passage after {after} axles or more beside one with twice the elements and shorter steps");
+        let why =
+            format!("the run goes on with the finer passages if settlement differs by more than {}", percent(limit));
+        draft.decide(self.name(), what, why);
     }
 
     fn without(&self) -> Option<fn(&mut Draft<'_>)> {

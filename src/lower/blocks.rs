@@ -108,7 +108,21 @@ fn blocks(draft: &mut Draft<'_>, traffic: &Traffic) -> Option<Blocks> {
     let (train, passage) = (track::train(&traffic.train), passages.next()?);
     let others = traffic.others.iter().map(track::train).zip(passages).collect();
     let tampings = scenario.tampings.clone();
-    Some(Blocks { train, passage, others, sequence, update, cure: true, share: true, recorded, tampings, stops, total })
+    let compared = None;
+    Some(Blocks {
+        train,
+        passage,
+        others,
+        sequence,
+        update,
+        cure: true,
+        share: true,
+        recorded,
+        tampings,
+        stops,
+        total,
+        compared,
+    })
 }
 
 fn told(tamping: &Tamping) -> (String, String) {

@@ -45,6 +45,11 @@ pub(super) fn of_blocks(node: &TrackNode, blocks: &Blocks, outlook: &Outlook) ->
         work.steps += steps;
         seconds += steps as f64 * (STEP + unknowns as f64 * UNKNOWN);
     }
+    if blocks.compared.is_some() {
+        let (train, plan) = blocks.kind(0);
+        let unknowns = 2 * unknowns + 10 * train.vehicles.len();
+        seconds += steps(train, &plan.finer()) as f64 * (STEP + unknowns as f64 * UNKNOWN);
+    }
     let standing = standing(node, blocks, *count);
     let profile = (node.seats.len() * unknowns) as f64 * PER_BAY * PLACE;
     let apart = AT_REST + WRITING + blocks.recorded.len() as f64 * profile;

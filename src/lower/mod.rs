@@ -115,6 +115,7 @@ impl Planner {
             Box::new(supports::Supports),
             // the error of a block is a share of the settlement, which depends on the supports
             Box::new(accuracy::Exchange),
+            Box::new(accuracy::Compare),
             // grains lie in the bays that differ from the far field
             Box::new(bays::Bays),
             // a tier makes the nodes and estimates their cost

@@ -11,14 +11,15 @@ use crate::graph::{
 };
 use crate::solvers::settlement::Peak;
 use crate::solvers::track::{Envelope, Loads, Run, StaticState, Track, TrackError, TrackLevel, solve_static};
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 /// A track on its ground, meshed, its time steps factored once for all passages.
 pub struct TrackSystem<'a> {
-    node: &'a TrackNode,
+    node: Cow<'a, TrackNode>,
     records: &'a [Record],
-    blocks: Option<&'a Blocks>,
+    blocks: Option<Cow<'a, Blocks>>,
     built: Option<Built>,
 }
 
@@ -42,7 +43,20 @@ impl<'a> TrackSystem<'a> {
     /// A track without ground yet; `blocks` gives the trains that run over it, `records` the histories that are
     /// recorded.
     pub fn new(node: &'a TrackNode, blocks: Option<&'a Blocks>, records: &'a [Record]) -> Self {
-        TrackSystem { node, records, blocks, built: None }
+        TrackSystem { node: Cow::Borrowed(node), records, blocks: blocks.map(Cow::Borrowed), built: None }
+    }
+
+    /// The same track on the same ground, with twice the elements and finer passages.
+    pub fn finer(&self) -> Result<TrackSystem<'a>, NodeError> {
+        let node = TrackNode { elements_per_bay: 2 * self.node.elements_per_bay, ..self.node.clone().into_owned() };
+        let blocks = self.blocks.as_ref().map(|blocks| Cow::Owned(blocks.finer()));
+        let mut finer = TrackSystem { node: Cow::Owned(node), records: self.records, blocks, built: None };
+        finer.stand_on(&self.built()?.responses)?;
+        Ok(finer)
+    }
+
+    fn blocks(&self) -> Result<&Blocks, NodeError> {
+        self.blocks.as_deref().ok_or(NodeError::NoTrain)
     }
 
     fn built(&self) -> Result<&Built, NodeError> {
@@ -55,8 +69,8 @@ impl<'a> TrackSystem<'a> {
     }
 
     fn bogies(&self) -> Result<&StandingBogies, NodeError> {
-        let (built, blocks) = (self.built()?, self.blocks.ok_or(NodeError::NoTrain)?);
-        let bogies = built.bogies.get_or_init(|| StandingBogies::new(self.node, &built.responses, blocks));
+        let (built, blocks) = (self.built()?, self.blocks()?);
+        let bogies = built.bogies.get_or_init(|| StandingBogies::new(&self.node, &built.responses, blocks));
         bogies.as_ref().map_err(|error| error.clone().into())
     }
 
@@ -67,7 +81,7 @@ impl<'a> TrackSystem<'a> {
         passage: &PassageOutcome,
         [from, to]: [&StandingForces; 2],
     ) -> Result<Vec<Vec<Peak>>, NodeError> {
-        let blocks = self.blocks.ok_or(NodeError::NoTrain)?;
+        let blocks = self.blocks()?;
         let mut peaks = self.bogies()?.follow(kind, &passage.peaks, from, to);
         let (train, plan) = blocks.kind(kind);
         for (seat, sources) in self.incomplete(plan.passed(train)) {
@@ -94,7 +108,7 @@ impl<'a> TrackSystem<'a> {
 
     fn run(&self, request: Request<'_>) -> Result<(Unloaded, PassageOutcome), NodeError> {
         let Request { axles, settlement, runner, kept, forces } = request;
-        let blocks = self.blocks.ok_or(NodeError::NoTrain)?;
+        let blocks = self.blocks()?;
         let built = self.built()?;
         let Built { responses, track, steps, .. } = built;
         let Runner { kind, direction } = runner;
@@ -259,7 +273,8 @@ impl Superstructure for TrackSystem<'_> {
             return Ok(());
         }
         let track = Arc::new(Track::new(self.node.model(responses))?);
-        let steps = self.blocks.map(|blocks| steps_of_kinds(blocks, &track)).transpose()?.unwrap_or_default();
+        let steps =
+            self.blocks.as_deref().map(|blocks| steps_of_kinds(blocks, &track)).transpose()?.unwrap_or_default();
         self.built = Some(Built { responses: responses.clone(), track, steps, bogies: OnceLock::new() });
         Ok(())
     }

@@ -1,7 +1,8 @@
 //! The results of a run, from its recorder.
 
 use super::{
-    Provenance, Reliance, Run, RunRecorder, Summary, TestTables, law_rows, summarise_check, summarise_laws, verdicts,
+    Provenance, Reliance, Run, RunRecorder, Summary, TestTables, law_rows, summarise_check, summarise_compared,
+    summarise_laws, verdicts,
 };
 use crate::diag::{Diagnostic, Sources};
 use crate::graph::Graph;
@@ -36,6 +37,7 @@ impl Run {
         let mut scalars = recorder.scalars();
         scalars.extend(summarise_laws(scenario, &laws));
         scalars.extend(summarise_check(scenario, &tables.check));
+        scalars.extend(summarise_compared(tables.compared.as_ref()));
         let view = tables.view(&histories, &scalars, &scenario.track, &graph.supports);
         let expectations = verdicts(scenario, view);
         let reliance = Reliance::new(scenario, graph, (diagnostics, sources), tables, &scalars);

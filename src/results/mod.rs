@@ -9,6 +9,7 @@ mod bed_readings;
 mod bed_tests;
 mod check;
 mod columns;
+mod compared;
 mod confidence;
 mod error;
 mod evaluate;
@@ -45,6 +46,8 @@ pub use bed_tests::{
 };
 pub use check::{CheckRow, Parting};
 use check::{check_rows, summarise_check};
+pub use compared::compared_passage;
+use compared::summarise_compared;
 pub use confidence::{
     confidence_of_difference, is_known_within, mean_and_confidence, mean_and_deviation, mean_and_interval,
 };

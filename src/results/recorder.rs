@@ -8,7 +8,7 @@ use super::{
     Scalar, SleeperRow, SleeperTable, SoFar, Source, Tables, TampingRow, TrainRow, bed_summary, check_rows, histories,
     static_wheel_load, summarise, test_loads,
 };
-use crate::execute::{Between, BlockMeasures, Checkpoint, Event, Listener};
+use crate::execute::{Between, BlockMeasures, Checkpoint, Comparison, Event, Listener};
 use crate::graph::{Block, Blocks, Graph, Record, Runner, SupportNode, TrackNode};
 use crate::nodes::{self, PassageOutcome, SeatOutcome, Stage, Tested, Unloaded, VolumeSample};
 use crate::scenario::response::Response;
@@ -36,6 +36,9 @@ pub struct RunTables {
     /// Settlement by the law and in the cells of grains that check it, after every block.
     #[serde(default)]
     pub check: Vec<CheckRow>,
+    /// A passage beside a finer one.
+    #[serde(default)]
+    pub compared: Option<Comparison>,
     /// Passages of each kind of train; empty if there is only one.
     pub trains: Vec<TrainRow>,
     pub tampings: Vec<TampingRow>,
@@ -452,6 +455,7 @@ impl Listener for RunRecorder<'_> {
             }
             Event::Tamped { axles, seats, before, after } => self.tamped(*axles, seats, before, after),
             Event::Laws { axles, settlement } => self.laws(*axles, settlement),
+            Event::Compared(compared) => self.tables.compared = Some(**compared),
             Event::Checked { axles, seats, settled, cells } => {
                 self.tables.check.extend(check_rows(self.track(), *axles, seats, (settled, cells)));
             }

@@ -1,6 +1,6 @@
 //! Limits of the results of a run, in sentences: warnings, assumptions, and confidence.
 
-use super::{Parting, RunTables, Scalar, SleeperRow};
+use super::{Parting, RunTables, Scalar, SleeperRow, compared_passage};
 use crate::diag::{Code, Diagnostic, Severity, Sources, and_list};
 use crate::graph::{GrainStretch, Graph, Model};
 use crate::scenario::{Evidence, Loading, Material, Scenario, SettlementLaw, Track};
@@ -137,6 +137,7 @@ fn confidence(
             )
         }));
     }
+    told.extend(tables.compared.as_ref().map(compared_passage));
     told.extend(Parting::of_rows(scenario, &tables.check).map(|parting| parting.sentence()));
     if let Some(repeats) = scalars.get("repeats") {
         told.push(match repeats.value as u64 {
