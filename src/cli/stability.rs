@@ -1,11 +1,15 @@
-//! `trackbed stability`: where a passage fails, and whether it says so.
+//! `trackbed stability`: where a passage fails, and whether it says so; in which blocks of axles a disturbance of the
+//! settlement grows.
 
 use super::scene::SceneArguments;
 use super::subject::{self, Subject};
 use super::{Format, Outcome, progress, terminal};
+use crate::execute::BLOCKS;
 use crate::report;
 use crate::trials::stability::stability;
-use crate::trials::{Stability, stability_csv};
+use crate::trials::{ExchangeMap, Stability, exchange_csv, exchange_map, most_cells, stability_csv};
+use crate::units::number;
+use serde::Serialize;
 use std::path::PathBuf;
 
 /// Map where a passage is stable, and try the scene under stress
@@ -15,7 +19,7 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Where `stability.csv` and `stability.svg` go.
+    /// Where `stability.csv`, `stability.svg`, `exchange.csv` and `exchange.svg` go.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[arg(long, value_enum, default_value = "human")]
@@ -41,18 +45,76 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Ok(stability) => stability,
         Err(cause) => return subject.failed(cause, 0),
     };
-    let files = [("stability.csv", stability_csv(&stability)), ("stability.svg", report::stability_svg(&stability))];
+    let exchange = match exchanged(&subject) {
+        Ok(exchange) => exchange,
+        Err(outcome) => return outcome,
+    };
+    let mut files =
+        vec![("stability.csv", stability_csv(&stability)), ("stability.svg", report::stability_svg(&stability))];
+    if let Some(map) = &exchange {
+        let picture = report::exchange_map_svg(map, &stability.title);
+        files.extend([("exchange.csv", exchange_csv(map)), ("exchange.svg", picture)]);
+    }
     if let Err(outcome) = subject::write(arguments.out.as_deref(), &files) {
         return outcome;
     }
     let outcome = match arguments.format {
         Format::Human => {
             terminal::out(&text(&stability));
+            exchange.iter().for_each(|map| terminal::out(&told(map)));
             Outcome::Fine
         }
-        Format::Json => subject::json(&stability),
+        Format::Json => subject::json(&Answer { stability: &stability, exchange: exchange.as_ref() }),
     };
     if stability.wrong() > 0 { Outcome::Failed } else { outcome }
+}
+
+/// The map of passages, and the map of the exchange if the scene has one.
+#[derive(Serialize)]
+struct Answer<'a> {
+    #[serde(flatten)]
+    stability: &'a Stability,
+    exchange: Option<&'a ExchangeMap>,
+}
+
+fn exchanged(subject: &Subject<'_>) -> Result<Option<ExchangeMap>, Outcome> {
+    let bar = progress::share();
+    bar.set_message("blocks");
+    let mut done = 0;
+    let mapped = exchange_map(&subject.planned, &mut || {
+        done += 1;
+        progress::set(&bar, done, most_cells() as u64);
+    });
+    bar.finish_and_clear();
+    mapped.map_err(|error| subject.stopped(&error))
+}
+
+/// What the map of the exchange says.
+fn told(map: &ExchangeMap) -> String {
+    let mut out = format!(
+        "\nexchange of forces and settlement: {} lengths and counts, growth of a sawtooth over {BLOCKS} blocks\n",
+        map.cells.len()
+    );
+    let mut counts: Vec<u64> = map.cells.iter().map(|cell| cell.axles).collect();
+    counts.dedup();
+    for axles in counts {
+        let limit = map.limit(axles).map_or("no length".to_owned(), |limit| format!("{} axles", number(limit.round())));
+        out += &format!("  after {axles} axles it grows in blocks of more than {limit} (theory: 2 / lambda)\n");
+    }
+    out += &format!("  {} of them grow or decay against theory\n", map.against_theory());
+    out += &match (map.adaptive, map.margin()) {
+        (false, Some(([before, axles], margin))) => format!(
+            "  the blocks of the scene: the nearest to its limit has {axles} axles after {before} axles, the limit is {} \
+             times as long\n",
+            number((10.0 * margin).round() / 10.0)
+        ),
+        _ => format!(
+            "  the blocks of the scene are adaptive, and their forces follow the settlement: a sawtooth is multiplied by \
+             at most {} per block\n",
+            number((100.0 * map.largest_following()).round() / 100.0)
+        ),
+    };
+    out
 }
 
 fn text(stability: &Stability) -> String {

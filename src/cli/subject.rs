@@ -62,6 +62,11 @@ impl<'a> Subject<'a> {
         })
     }
 
+    /// A run that the study needs has failed.
+    pub fn stopped(&self, error: &RunError) -> Outcome {
+        stop(self.compiled, execute::diagnose(error, &self.planned.graph, &self.planned.origins))
+    }
+
     /// A passage that the study needs has failed.
     pub fn failed(&self, cause: TrackError, axles: u64) -> Outcome {
         let error = RunError::node(Clock::Axles(axles), NodeError::Track(cause));

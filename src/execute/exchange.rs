@@ -53,11 +53,11 @@ impl Exchange {
     }
 
     /// Forces of standing bogies on its settlement.
-    pub fn standing(&self, track: &TrackSystem<'_>) -> Result<&StandingForces, NodeError> {
+    pub fn standing(&self, track: &TrackSystem<'_>, with_voids: bool) -> Result<&StandingForces, NodeError> {
         if let Some(known) = self.standing.get() {
             return Ok(known);
         }
-        let forces = track.standing(&self.settlement)?;
+        let forces = track.standing(&self.settlement, with_voids)?;
         Ok(self.standing.get_or_init(|| forces))
     }
 

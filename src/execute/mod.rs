@@ -5,6 +5,7 @@
 
 mod blocks;
 mod comparing;
+mod disturbed;
 mod equilibrium;
 mod event;
 mod exchange;
@@ -20,6 +21,7 @@ mod tests_of_beds;
 mod timed;
 
 pub use comparing::Comparison;
+pub use disturbed::{BLOCKS, Disturbance, blocks_of_run, disturbances};
 pub use equilibrium::at_rest;
 pub use event::{Between, Both, Checkpoint, Event, Listener, ScheduleState};
 pub use executor::{Custom, Executor};

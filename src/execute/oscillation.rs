@@ -45,7 +45,7 @@ pub(super) fn sawtooth(runs: &[Range<usize>], settled: &[f64]) -> f64 {
 const ALTERNATIONS: usize = 5;
 
 /// Second differences.
-fn bends(values: &[f64]) -> Vec<f64> {
+pub(super) fn bends(values: &[f64]) -> Vec<f64> {
     values.windows(3).map(|w| w[0] - 2.0 * w[1] + w[2]).collect()
 }
 

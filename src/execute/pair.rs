@@ -93,8 +93,9 @@ impl Pair<'_> {
         block: &Block,
     ) -> Result<(Vec<Followed<'e>>, Vec<f64>), RunError> {
         let at = |cause: NodeError| RunError::node(Clock::Axles(exchange.axles), cause);
-        let standing = |settlement: &[f64]| self.track.standing(settlement).map_err(at);
-        let reference = exchange.standing(&self.track).map_err(at)?;
+        let with_voids = self.ground.sees_voids();
+        let standing = |settlement: &[f64]| self.track.standing(settlement, with_voids).map_err(at);
+        let reference = exchange.standing(&self.track, with_voids).map_err(at)?;
         let mut passed: Vec<Followed<'e>> = before.to_vec();
         let begun = self.predict(block.before, &loads(&passed))?;
         let mut here = if begun == exchange.settlement { reference.clone() } else { standing(&begun)? };

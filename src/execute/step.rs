@@ -6,6 +6,7 @@ use super::oscillation::{amplification, sawtooth};
 use super::pair::{Pair, loads};
 use crate::graph::Block;
 use crate::nodes::{Bonds, Following};
+use std::ops::ControlFlow;
 
 /// Accuracy and cost of the exchange of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -142,6 +143,15 @@ impl Pair<'_> {
             measured.sawtooth = sawtooth(&self.runs, &difference(&self.settlement(), &here.settlement));
             return Ok(Done { block, measured, next: None });
         }
+    }
+
+    /// Lets a block of so many trains pass as an adaptive block does, whatever its error.
+    pub fn second_order_of(&mut self, here: &mut Exchange, trains: u64) -> Result<(), RunError> {
+        let half = self.blocks.block(here.axles, trains / 2);
+        let (_, halfway) = self.followed(here, &[], &half)?;
+        let mut between = Exchange::new(half.before + half.axles, halfway, Vec::new());
+        self.ensure(&mut between, &self.blocks.block(here.axles, trains).runners())?;
+        self.second_order(here, &between, trains, &mut |_| ControlFlow::Continue(()))
     }
 
     /// Lets a block pass: its first train with the forces of the start, the others with those of the middle, which

@@ -105,6 +105,10 @@ impl Substructure for LawGround<'_> {
         self.settlements(&self.state)
     }
 
+    fn sees_voids(&self) -> bool {
+        self.laws.iter().flatten().any(|law| law.sees_voids()) || self.bounded.iter().any(Option::is_some)
+    }
+
     /// Laws are exact: this equals the result of [`Substructure::advance`], to the last bit.
     fn predict(&self, loads: &[Load<'_>]) -> Result<Vec<f64>, NodeError> {
         if self.laws.is_empty() {

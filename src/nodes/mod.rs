@@ -162,6 +162,11 @@ pub trait Substructure: Send + Sync {
         Forces::Peaks
     }
 
+    /// Whether its settlement depends on the voids under the sleepers.
+    fn sees_voids(&self) -> bool {
+        false
+    }
+
     /// Settlement of every seat (m) that these trains would leave. Changes nothing.
     fn predict(&self, loads: &[Load<'_>]) -> Result<Vec<f64>, NodeError>;
 

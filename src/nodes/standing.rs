@@ -7,11 +7,12 @@
 //! F(s) = F(passage at s0) + F_standing(s) - F_standing(s0)
 //! ```
 //!
-//! What is left for the next passage is the change of the dynamic part.
+//! What is left for the next passage is the change of the dynamic part. Voids under the sleepers without a train follow
+//! in the same way, for laws that see them.
 
 use crate::graph::{Blocks, Bogie, Responses, TrackNode};
 use crate::solvers::settlement::Peak;
-use crate::solvers::track::{Track, TrackError, forces_under_wheels};
+use crate::solvers::track::{Loads, Track, TrackError, TrackLevel, forces_under_wheels, solve_static};
 use rayon::prelude::*;
 
 /// Standing bogies of every kind of train on a track with one element a bay.
@@ -52,11 +53,25 @@ impl Row {
         Ok(Some(Row { track: Track::new(node.model(&responses))?, node, responses, first, seats }))
     }
 
+    /// The part of a settlement of every seat (m).
+    fn here<'s>(&self, settlement: &'s [f64]) -> &'s [f64] {
+        &settlement[self.first..self.first + self.node.seats.len()]
+    }
+
+    fn level(&self, settlement: &[f64]) -> TrackLevel {
+        self.node.level(self.here(settlement), &self.responses)
+    }
+
     /// Forces of a bogie on the supports of its seats, N, and deflections of these supports, m.
     fn forces(&self, settlement: &[f64], bogie: &Bogie) -> Result<Vec<[f64; 2]>, TrackError> {
-        let here = &settlement[self.first..self.first + self.node.seats.len()];
-        let level = self.node.level(here, &self.responses);
-        forces_under_wheels(&self.track, &level, bogie.wheels, &self.seats)
+        forces_under_wheels(&self.track, &self.level(settlement), bogie.wheels, &self.seats)
+    }
+
+    /// Gaps under the sleepers of its seats without a train, m.
+    fn voids(&self, settlement: &[f64]) -> Result<Vec<f64>, TrackError> {
+        let state = solve_static(&self.track, &self.level(settlement), &Loads::default())?;
+        let here = self.here(settlement);
+        Ok(self.seats.iter().map(|seat| (here[*seat] - state.foot_displacements[*seat]).max(0.0)).collect())
     }
 }
 
@@ -70,8 +85,9 @@ impl StandingBogies {
         Ok(StandingBogies { rows: rows.collect::<Result<_, _>>()?, kinds })
     }
 
-    /// The forces on a settlement of every seat (m); fails if the track has no equilibrium.
-    pub fn forces(&self, settlement: &[f64]) -> Result<StandingForces, TrackError> {
+    /// The forces on a settlement of every seat (m), and the voids if they are asked for; fails if the track has no
+    /// equilibrium.
+    pub fn forces(&self, settlement: &[f64], with_voids: bool) -> Result<StandingForces, TrackError> {
         let tasks: Vec<(usize, usize, &Row)> = (0..self.kinds.len())
             .flat_map(|kind| (0..self.kinds[kind].len()).map(move |bogie| (kind, bogie)))
             .flat_map(|(kind, bogie)| self.rows.iter().map(move |row| (kind, bogie, row)))
@@ -83,6 +99,15 @@ impl StandingBogies {
         for ((kind, bogie, row), found) in tasks.into_iter().zip(found) {
             for ([force, deflection], seat) in found?.into_iter().zip(&row.seats) {
                 forces[kind][bogie][row.first + seat] = Peak { force, deflection, void: 0.0 };
+            }
+        }
+        if with_voids {
+            let voids: Vec<Result<Vec<f64>, TrackError>> =
+                self.rows.par_iter().map(|row| row.voids(settlement)).collect();
+            for (row, voids) in self.rows.iter().zip(voids) {
+                for (seat, void) in row.seats.iter().zip(voids?) {
+                    forces.iter_mut().flatten().for_each(|bogie| bogie[row.first + seat].void = void);
+                }
             }
         }
         Ok(StandingForces(forces))

@@ -63,9 +63,9 @@ impl<'a> TrackSystem<'a> {
         self.built.as_ref().ok_or(NodeError::NoGround)
     }
 
-    /// Forces of standing bogies on a settlement of every seat (m).
-    pub fn standing(&self, settlement: &[f64]) -> Result<StandingForces, NodeError> {
-        Ok(self.bogies()?.forces(settlement)?)
+    /// Forces of standing bogies on a settlement of every seat (m), and the voids if they are asked for.
+    pub fn standing(&self, settlement: &[f64], with_voids: bool) -> Result<StandingForces, NodeError> {
+        Ok(self.bogies()?.forces(settlement, with_voids)?)
     }
 
     fn bogies(&self) -> Result<&StandingBogies, NodeError> {

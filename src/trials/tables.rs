@@ -1,5 +1,6 @@
 //! The tables of a chart and a map as CSV: one row a passage, SI units, empty if there is no value.
 
+use super::ExchangeMap;
 use super::chart::{Chart, Outcome};
 use super::stability::Stability;
 
@@ -122,6 +123,16 @@ pub fn stability_csv(stability: &Stability) -> String {
             stress.verdict.why().to_owned(),
         ]);
         table.row(row);
+    }
+    table.text()
+}
+
+/// One row a cell of an exchange map.
+pub fn exchange_csv(map: &ExchangeMap) -> String {
+    let mut table = Table::new(&["axles", "block_axles", "in_theory", "forces_stay", "forces_follow"]);
+    for cell in &map.cells {
+        let factors = [cell.in_theory, cell.stays, cell.follows].map(short);
+        table.row([cell.axles, cell.block_axles].map(|axles| axles.to_string()).into_iter().chain(factors).collect());
     }
     table.text()
 }

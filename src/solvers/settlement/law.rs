@@ -145,6 +145,11 @@ impl Law {
         !matches!(self.form, Form::Guerin(_))
     }
 
+    /// Whether the void under a sleeper changes the settlement by a wheel.
+    pub fn sees_voids(&self) -> bool {
+        matches!(&self.form, Form::Power(law) if law.g != 0.0)
+    }
+
     /// Force below which a fresh support does not settle, N; `None` for laws without a threshold.
     pub fn threshold(&self) -> Option<f64> {
         match &self.form {

@@ -33,12 +33,12 @@ impl Peak {
         }
     }
 
-    /// The same peak with the change of the force and deflection of another one added, never below 0.
+    /// The same peak with the change of another one added, never below 0.
     pub fn followed(self, from: Peak, to: Peak) -> Peak {
         Peak {
             force: (self.force + (to.force - from.force)).max(0.0),
             deflection: (self.deflection + (to.deflection - from.deflection)).max(0.0),
-            void: self.void,
+            void: (self.void + (to.void - from.void)).max(0.0),
         }
     }
 

@@ -1,0 +1,75 @@
+//! Map of the exchange of forces and settlement: in which blocks a disturbance of the settlement grows, against theory,
+//! and how far the blocks of the scene are from there.
+
+use super::Planned;
+use crate::execute::{Disturbance, RunError, blocks_of_run, disturbances};
+use crate::graph::Graph;
+use serde::Serialize;
+
+/// Growth of a sawtooth over axles that have passed and axles of a block.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExchangeMap {
+    /// Count by count, short blocks first.
+    pub cells: Vec<Disturbance>,
+    /// Axles before each block of the scene, and its axles.
+    pub blocks: Vec<[u64; 2]>,
+    /// Whether the forces follow the settlement within the blocks of the scene.
+    pub adaptive: bool,
+}
+
+/// Shares of all axles after which the track is disturbed.
+const COUNTS: [f64; 4] = [0.0, 0.02, 0.1, 0.3];
+/// Blocks of at most so many sizes, each twice the one before.
+const SIZES: usize = 8;
+/// Growth that theory and measurement may disagree about: near the limit the map tells neither.
+const NEAR: f64 = 0.15;
+
+impl ExchangeMap {
+    /// The largest growth of a disturbance in cells whose blocks follow the settlement, as adaptive ones do.
+    pub fn largest_following(&self) -> f64 {
+        self.cells.iter().map(|cell| cell.follows).fold(0.0, f64::max)
+    }
+
+    /// Axles of a block at which a disturbance neither grows nor decays after so many axles: 2 / lambda, in theory.
+    pub fn limit(&self, axles: u64) -> Option<f64> {
+        let rows = self.cells.iter().filter(|cell| cell.axles <= axles);
+        let last = rows.max_by_key(|cell| cell.axles)?;
+        let per_axle = (1.0 - last.in_theory) / last.block_axles as f64;
+        (per_axle > 0.0).then(|| 2.0 / per_axle)
+    }
+
+    /// The block of the scene nearest to its limit: axles before it, its axles, and limit / axles.
+    pub fn margin(&self) -> Option<([u64; 2], f64)> {
+        let margin = |block: &[u64; 2]| Some((*block, self.limit(block[0])? / block[1] as f64));
+        self.blocks.iter().filter_map(margin).min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Cells in which a disturbance grows against theory, or decays against it.
+    pub fn against_theory(&self) -> usize {
+        let grows = |factor: f64| (factor.abs() > 1.0 + NEAR, factor.abs() < 1.0 - NEAR);
+        let differ = |cell: &&Disturbance| {
+            let ((theory_grows, theory_decays), (grows, decays)) = (grows(cell.in_theory), grows(cell.stays));
+            theory_grows && decays || theory_decays && grows
+        };
+        self.cells.iter().filter(differ).count()
+    }
+}
+
+/// Maps the exchange of a scene by a law; `None` for a scene on grains, and if nothing settles.
+pub fn exchange_map(planned: &Planned, tell: &mut dyn FnMut()) -> Result<Option<ExchangeMap>, RunError> {
+    let graph: &Graph = &planned.graph;
+    if graph.has_grains_under_track() || graph.laws().next().is_none() {
+        return Ok(None);
+    }
+    let blocks = &planned.blocks;
+    let counts = COUNTS.map(|share| (share * blocks.total as f64) as u64);
+    let sizes: Vec<u64> = (0..SIZES).map(|power| 1 << power).collect();
+    let cells = disturbances(graph, &counts, &sizes, tell)?;
+    let map = ExchangeMap { cells, blocks: blocks_of_run(graph)?, adaptive: blocks.adaptive().is_some() };
+    Ok(map.cells.iter().all(|cell| cell.stays.is_finite() && cell.follows.is_finite()).then_some(map))
+}
+
+/// Passages that a map takes at most.
+pub fn most_cells() -> usize {
+    COUNTS.len() * SIZES
+}
