@@ -7,6 +7,7 @@ use trackbed::graph::{Block, Graph, Schedule};
 use trackbed::results::{BlockRow, RunRecorder};
 use trackbed::scenario::Scenario;
 use trackbed::solvers::track::Direction;
+use trackbed::trials::{Planned, exchange_map};
 use trackbed::{Compiled, compile};
 
 mod common {
@@ -235,4 +236,25 @@ fn several_scenes_at_once_are_each_alone() {
         execute::execute(graph, &mut alone).unwrap();
         assert!(alone.tables == together.tables && alone.histories == together.histories);
     }
+}
+
+#[test]
+fn a_disturbance_grows_in_blocks_beyond_the_limit_unless_the_forces_follow() {
+    let (from, to) = every("32 axles");
+    let rate = STEADY.1.replace("gamma = 2 mm", "gamma = 10 mm");
+    let compiled = compiled(&[(STEADY.0, &rate), (from, &to), ("[0, 100, 256]", "[0, 256]")]);
+    let planned = Planned::new(compiled.graph.as_ref().unwrap(), &compiled.origins).unwrap();
+    let map = exchange_map(&planned, &mut || ()).unwrap().expect("a law");
+    let grows = map.cells.iter().filter(|cell| cell.stays > 1.0).count();
+    assert!(grows >= 3 && grows + 3 < map.cells.len(), "both happen: {:#?}", map.cells);
+    assert_eq!(map.against_theory(), 0, "{:#?}", map.cells);
+    // a law without hardening: A is proportional to the length of the block
+    let first: Vec<f64> =
+        map.cells.iter().filter(|cell| cell.axles == 0).map(|c| c.amplification / c.block_axles as f64).collect();
+    assert!(first.iter().all(|per_axle| (per_axle / first[0] - 1.0).abs() < 0.05), "{first:?}");
+    assert!(map.largest_following() < 1.0, "{}", map.largest_following());
+    let limit = map.limit(0).expect("a limit");
+    let (block, margin) = map.margin().unwrap();
+    assert_eq!(block[1], 32);
+    assert!((margin - limit / 32.0).abs() < 0.3 * margin, "{limit} {margin}");
 }

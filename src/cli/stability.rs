@@ -98,14 +98,19 @@ fn told(map: &ExchangeMap) -> String {
     let mut counts: Vec<u64> = map.cells.iter().map(|cell| cell.axles).collect();
     counts.dedup();
     for axles in counts {
-        let limit = map.limit(axles).map_or("no length".to_owned(), |limit| format!("{} axles", number(limit.round())));
-        out += &format!("  after {axles} axles it grows in blocks of more than {limit} (theory: 2 / lambda)\n");
+        out += &match map.limit(axles) {
+            Some(limit) => {
+                format!("  after {axles} axles it grows in blocks of more than {} axles\n", number(limit.round()))
+            }
+            None => format!("  after {axles} axles it grows in no block of up to {} axles\n", map.longest(axles)),
+        };
     }
     out += &format!("  {} of them grow or decay against theory\n", map.against_theory());
     out += &match (map.adaptive, map.margin()) {
         (false, Some(([before, axles], margin))) => format!(
-            "  the blocks of the scene: the nearest to its limit has {axles} axles after {before} axles, the limit is {} \
+            "  the blocks of the scene: the nearest to its limit has {axles} axles after {before} axles, the limit is {}{} \
              times as long\n",
+            if map.limit(before).is_some() { "" } else { "more than " },
             number((10.0 * margin).round() / 10.0)
         ),
         _ => format!(

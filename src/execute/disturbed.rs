@@ -2,7 +2,9 @@
 //! explicit, so a block that is too long lets the disturbance grow.
 //!
 //! A sawtooth is added to the settlement that the track sees. Sleepers that are higher carry more and settle more, so a
-//! block returns the sawtooth multiplied by 1 - dN lambda. It grows where dN lambda is above 2.
+//! block returns the sawtooth multiplied by 1 - A, where A = dN lambda if every train settles the track by as much. It
+//! grows where A is above 2. In theory A follows from statics: from the forces of standing bogies on the track with and
+//! without the sawtooth, and from the law. The measurement runs whole passages over both tracks, block after block.
 
 use super::blocks::restored;
 use super::event::{Checkpoint, Event, Listener};
@@ -11,8 +13,9 @@ use super::executor::Executor;
 use super::machine::{Machine, RunError};
 use super::oscillation::bends;
 use super::pair::{Pair, settling};
-use crate::graph::{Blocks, Clock, Control, Graph, Responses, TrackSeat, Update};
-use crate::nodes::{Builders, Forces, Load, Mark, NodeError, Substructure};
+use crate::graph::{Block, Blocks, Clock, Control, Graph, Responses, TrackSeat, Update};
+use crate::nodes::{Builders, Forces, Load, Mark, NodeError, PassageOutcome, Substructure};
+use crate::solvers::settlement::Peak;
 use crate::store::Beds;
 use serde::Serialize;
 use std::ops::ControlFlow;
@@ -23,7 +26,8 @@ pub struct Disturbance {
     /// Axles that had passed, and axles of a block.
     pub axles: u64,
     pub block_axles: u64,
-    /// Factor by which a block multiplies the sawtooth in theory: 1 - dN lambda, lambda from a block of one train.
+    /// A of the first block, and growth per block over [`BLOCKS`] blocks, in theory.
+    pub amplification: f64,
     pub in_theory: f64,
     /// Growth per block where the forces stay over the block, measured over [`BLOCKS`] blocks.
     pub stays: f64,
@@ -31,7 +35,7 @@ pub struct Disturbance {
     pub follows: f64,
 }
 
-/// Blocks over which growth is measured.
+/// Blocks over which growth is taken.
 pub const BLOCKS: u32 = 3;
 /// Amplitude of the sawtooth / largest deflection of a support under the train: too small to lift a sleeper.
 const AMPLITUDE: f64 = 2e-3;
@@ -56,15 +60,15 @@ pub fn disturbances(
     for state in states(graph, counts)? {
         let here = Here { machine: Machine { graph, builders: &builders, beds: &beds }, blocks, state };
         let axles = here.axles();
-        let per_train = here.factor(1)?;
+        let added = here.added()?;
         for trains in trains {
             let length = blocks.block(axles, *trains).axles;
             if axles + u64::from(BLOCKS) * length > blocks.total {
                 continue;
             }
-            let in_theory = 1.0 - *trains as f64 * (1.0 - per_train);
-            let [stays, follows] = [here.growth(*trains, false)?, here.growth(*trains, true)?];
-            found.push(Disturbance { axles, block_axles: length, in_theory, stays, follows });
+            let [amplification, in_theory] = here.in_theory(&added, *trains)?;
+            let [stays, follows] = [here.growth(&added, *trains, false)?, here.growth(&added, *trains, true)?];
+            found.push(Disturbance { axles, block_axles: length, amplification, in_theory, stays, follows });
             tell();
         }
     }
@@ -126,28 +130,33 @@ impl Here<'_> {
         }
     }
 
-    /// Factor by which a block of trains multiplies the sawtooth, with the forces of its start.
-    fn factor(&self, trains: u64) -> Result<f64, RunError> {
-        let (start, end) = self.sawtooth(trains, 1, false)?;
-        let [start, end] = [start, end].map(|values| bends(&values));
-        let product: f64 = start.iter().zip(&end).map(|(a, b)| a * b).sum();
-        Ok(product / start.iter().map(|a| a * a).sum::<f64>())
+    /// A of the first block of so many trains, and growth per block, from statics and the law.
+    fn in_theory(&self, added: &[f64], trains: u64) -> Result<[f64; 2], RunError> {
+        let (mut pair, mut here) = self.begun(None)?;
+        let sharp = bends(added);
+        let square: f64 = sharp.iter().map(|bend| bend * bend).sum();
+        let mut amplifications = Vec::new();
+        for _ in 0..BLOCKS {
+            let block = pair.blocks.block(here.axles, trains);
+            pair.ensure(&mut here, &block.runners())?;
+            let parts = pair.blocks.parts(&block);
+            let changed = changed(&pair, &here, &parts, added)?;
+            let product: f64 = sharp.iter().zip(bends(&changed)).map(|(a, b)| a * b).sum();
+            amplifications.push(-product / square);
+            pair.advance(here.axles, &here.loads(&parts), &mut |_| ControlFlow::Continue(()))?;
+            here = Exchange::new(here.axles + block.axles, pair.settlement(), Vec::new());
+        }
+        let growth: f64 = amplifications.iter().map(|amplification| (1.0 - amplification).abs()).product();
+        Ok([amplifications[0], growth.powf(1.0 / f64::from(BLOCKS))])
     }
 
-    /// Growth of the sawtooth per block, over [`BLOCKS`] blocks.
-    fn growth(&self, trains: u64, follows: bool) -> Result<f64, RunError> {
-        let (start, end) = self.sawtooth(trains, BLOCKS, follows)?;
-        let [start, end] = [start, end].map(|values| bends(&values).iter().map(|v| v * v).sum::<f64>().sqrt());
+    /// Growth of the sawtooth per block, measured over [`BLOCKS`] blocks.
+    fn growth(&self, added: &[f64], trains: u64, follows: bool) -> Result<f64, RunError> {
+        let level = self.after(None, trains, follows)?;
+        let disturbed = self.after(Some(added.to_vec()), trains, follows)?;
+        let end: Vec<f64> = disturbed.iter().zip(&level).map(|(a, b)| a - b).collect();
+        let [start, end] = [added, &end].map(|values| bends(values).iter().map(|v| v * v).sum::<f64>().sqrt());
         Ok((end / start).powf(1.0 / f64::from(BLOCKS)))
-    }
-
-    /// The sawtooth at every seat before and after some blocks, m.
-    fn sawtooth(&self, trains: u64, count: u32, follows: bool) -> Result<(Vec<f64>, Vec<f64>), RunError> {
-        let added = self.added()?;
-        let level = self.after(None, trains, count, follows)?;
-        let disturbed = self.after(Some(added.clone()), trains, count, follows)?;
-        let end = disturbed.iter().zip(&level).map(|(a, b)| a - b).collect();
-        Ok((added, end))
     }
 
     /// A sawtooth at the seats that settle and that every wheel passes, m.
@@ -166,10 +175,10 @@ impl Here<'_> {
         Ok(seats.iter().enumerate().map(tooth).collect())
     }
 
-    /// Settlement of every seat after some blocks of so many trains, m.
-    fn after(&self, added: Option<Vec<f64>>, trains: u64, count: u32, follows: bool) -> Result<Vec<f64>, RunError> {
+    /// Settlement of every seat after [`BLOCKS`] blocks of so many trains, m.
+    fn after(&self, added: Option<Vec<f64>>, trains: u64, follows: bool) -> Result<Vec<f64>, RunError> {
         let (mut pair, mut here) = self.begun(added)?;
-        for _ in 0..count {
+        for _ in 0..BLOCKS {
             let block = pair.blocks.block(here.axles, trains);
             pair.ensure(&mut here, &block.runners())?;
             if follows && trains > 1 {
@@ -205,6 +214,27 @@ impl Here<'_> {
         let pair = Pair { blocks: self.blocks, track, ground, check: None, control: Control::default(), runs };
         Ok((pair, Exchange::new(self.axles(), settlement, Vec::new())))
     }
+}
+
+/// Change of the settlement by a block if the track is moved (m), with the forces of standing bogies, m.
+fn changed(pair: &Pair<'_>, here: &Exchange, parts: &[Block], moved: &[f64]) -> Result<Vec<f64>, RunError> {
+    let at = |cause| RunError::node(Clock::Axles(here.axles), cause);
+    let with_voids = pair.ground.sees_voids();
+    let shifted: Vec<f64> = here.settlement.iter().zip(moved).map(|(settled, moved)| settled + moved).collect();
+    let [from, to] = [&here.settlement, &shifted].map(|settlement| pair.track.standing(settlement, with_voids));
+    let (from, to) = (from.map_err(at)?, to.map_err(at)?);
+    let runs = parts.iter().flat_map(|part| &part.runs);
+    let known = runs.filter_map(|(runner, trains)| Some((runner.kind, here.passage(*runner)?, *trains)));
+    let peaks = known.map(|(kind, passage, trains)| {
+        let followed = pair.track.follow(kind, passage, [&from, &to]).map_err(at)?;
+        Ok((passage, followed, trains))
+    });
+    let peaks: Vec<(&PassageOutcome, Vec<Vec<Peak>>, u64)> = peaks.collect::<Result<_, RunError>>()?;
+    let still: Vec<Load<'_>> = peaks.iter().map(|one| Load::new(one.0, one.2)).collect();
+    let moved: Vec<Load<'_>> =
+        still.iter().zip(&peaks).map(|(load, one)| Load { followed: Some(&one.1), ..*load }).collect();
+    let [still, moved] = [pair.predict(here.axles, &still)?, pair.predict(here.axles, &moved)?];
+    Ok(moved.iter().zip(&still).map(|(a, b)| a - b).collect())
 }
 
 /// A ground with a settlement on top of its own, m.

@@ -30,6 +30,8 @@ pub struct CellsNode {
     /// Error of the settlement of a cell / largest settlement or compression under the train, below which the other
     /// trains of a block are not computed; 0 computes all trains.
     pub tolerance: f64,
+    /// Trains of the whole run: each block gets the share of the tolerance that its trains have of these.
+    pub trains: u64,
 }
 
 /// A seat that may get its own cell during the run, if its load differs from the load of the seats that share its cell.

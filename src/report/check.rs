@@ -27,7 +27,7 @@ pub fn checked(run: &Run) -> Option<Figure> {
         chart.series.push(Series::new(&format!("{shown}, grains"), class, Mark::Dots, points(|row| row.cell_m)));
     }
     let caption = format!(
-        "Settlement by the law (lines) and of a cell of grains under the same forces (dots), at the sleepers that the \
+        "Settlement by the law (lines) and of a cell of grains under the same forces (lines with dots), at the sleepers that the \
          scene checks. {}.",
         opened(&parting)
     );

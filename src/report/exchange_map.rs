@@ -35,7 +35,7 @@ pub fn exchange_map_svg(map: &ExchangeMap, title: &str) -> String {
             let row = sizes.iter().position(|axles| *axles == cell.block_axles).unwrap_or(0) as f64;
             let (x, y) = (left + column * CELL[0], TOP + up - (row + 1.0) * CELL[1]);
             let frame = Frame { x, y, width: CELL[0] - 1.0, height: CELL[1] - 1.0 };
-            let theory = (panel == 0).then_some(cell.in_theory.abs());
+            let theory = (panel == 0).then_some(cell.in_theory);
             draw(&mut svg, frame, (growth(cell), theory));
         }
         for (column, axles) in counts.iter().enumerate() {
@@ -74,20 +74,22 @@ mod tests {
 
     #[test]
     fn a_map_shows_both_kinds_of_blocks_and_where_they_grow() {
-        let cell = |axles, block_axles, in_theory: f64, stays, follows| Disturbance {
+        let cell = |axles, block_axles, amplification: f64, stays, follows| Disturbance {
             axles,
             block_axles,
-            in_theory,
+            amplification,
+            in_theory: (1.0 - amplification).abs(),
             stays,
             follows,
         };
-        let cells = vec![cell(0, 4, 0.8, 0.81, 0.8), cell(0, 80, -3.0, 2.9, 0.4), cell(100, 4, 0.9, 0.9, 0.9)];
+        let cells = vec![cell(0, 4, 0.2, 0.81, 0.8), cell(0, 80, 4.0, 2.9, 0.4), cell(100, 4, 0.1, 0.9, 0.9)];
         let map = ExchangeMap { cells, blocks: vec![[0, 20], [20, 80]], adaptive: false };
         let svg = exchange_map_svg(&map, "scene");
         assert!(roxmltree::Document::parse(&svg).is_ok());
         assert!(svg.contains("\u{25b2} 2.9") && svg.contains("forces follow within the block"), "{svg}");
-        // 80 axles multiply by -3: 4 lambda 20
+        // between 4 axles (0.2) and 80 axles (4)
         assert!((map.limit(0).unwrap() - 40.0).abs() < 1e-9);
+        assert_eq!((map.limit(100), map.longest(100)), (None, 4));
         let (block, margin) = map.margin().unwrap();
         assert!(block == [20, 80] && (margin - 0.5).abs() < 1e-9, "{block:?} {margin}");
         assert_eq!(map.against_theory(), 0);

@@ -21,6 +21,8 @@ pub struct ExchangeMap {
 const COUNTS: [f64; 4] = [0.0, 0.02, 0.1, 0.3];
 /// Blocks of at most so many sizes, each twice the one before.
 const SIZES: usize = 8;
+/// A at which a disturbance neither grows nor decays.
+const GROWS: f64 = 2.0;
 /// Growth that theory and measurement may disagree about: near the limit the map tells neither.
 const NEAR: f64 = 0.15;
 
@@ -30,23 +32,44 @@ impl ExchangeMap {
         self.cells.iter().map(|cell| cell.follows).fold(0.0, f64::max)
     }
 
-    /// Axles of a block at which a disturbance neither grows nor decays after so many axles: 2 / lambda, in theory.
-    pub fn limit(&self, axles: u64) -> Option<f64> {
-        let rows = self.cells.iter().filter(|cell| cell.axles <= axles);
-        let last = rows.max_by_key(|cell| cell.axles)?;
-        let per_axle = (1.0 - last.in_theory) / last.block_axles as f64;
-        (per_axle > 0.0).then(|| 2.0 / per_axle)
+    /// Cells of the last count up to so many axles, short blocks first.
+    fn row(&self, axles: u64) -> impl Iterator<Item = &Disturbance> {
+        let counts = self.cells.iter().map(|cell| cell.axles).filter(move |count| *count <= axles);
+        let last = counts.max();
+        self.cells.iter().filter(move |cell| Some(cell.axles) == last)
     }
 
-    /// The block of the scene nearest to its limit: axles before it, its axles, and limit / axles.
+    /// Axles of the shortest block that lets a disturbance grow after so many axles, in theory: A is 2. `None` if no
+    /// block of the map does.
+    pub fn limit(&self, axles: u64) -> Option<f64> {
+        let mut before = [0.0, 0.0];
+        for cell in self.row(axles) {
+            let here = [cell.block_axles as f64, cell.amplification];
+            if here[1] > GROWS {
+                let share = (GROWS - before[1]) / (here[1] - before[1]);
+                return Some(before[0] + share * (here[0] - before[0]));
+            }
+            before = here;
+        }
+        None
+    }
+
+    /// The longest block of the map after so many axles.
+    pub fn longest(&self, axles: u64) -> u64 {
+        self.row(axles).map(|cell| cell.block_axles).max().unwrap_or(0)
+    }
+
+    /// The block of the scene nearest to its limit: axles before it, its axles, and limit / axles. Where no block of the
+    /// map grows, the longest one is the least limit.
     pub fn margin(&self) -> Option<([u64; 2], f64)> {
-        let margin = |block: &[u64; 2]| Some((*block, self.limit(block[0])? / block[1] as f64));
-        self.blocks.iter().filter_map(margin).min_by(|a, b| a.1.total_cmp(&b.1))
+        let limit = |axles: u64| self.limit(axles).unwrap_or(self.longest(axles) as f64);
+        let margin = |block: &[u64; 2]| (*block, limit(block[0]) / block[1] as f64);
+        self.blocks.iter().map(margin).min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Cells in which a disturbance grows against theory, or decays against it.
     pub fn against_theory(&self) -> usize {
-        let grows = |factor: f64| (factor.abs() > 1.0 + NEAR, factor.abs() < 1.0 - NEAR);
+        let grows = |factor: f64| (factor > 1.0 + NEAR, factor < 1.0 - NEAR);
         let differ = |cell: &&Disturbance| {
             let ((theory_grows, theory_decays), (grows, decays)) = (grows(cell.in_theory), grows(cell.stays));
             theory_grows && decays || theory_decays && grows
@@ -69,7 +92,7 @@ pub fn exchange_map(planned: &Planned, tell: &mut dyn FnMut()) -> Result<Option<
     Ok(map.cells.iter().all(|cell| cell.stays.is_finite() && cell.follows.is_finite()).then_some(map))
 }
 
-/// Passages that a map takes at most.
+/// Cells that a map has at most.
 pub fn most_cells() -> usize {
     COUNTS.len() * SIZES
 }

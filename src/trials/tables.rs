@@ -129,9 +129,9 @@ pub fn stability_csv(stability: &Stability) -> String {
 
 /// One row a cell of an exchange map.
 pub fn exchange_csv(map: &ExchangeMap) -> String {
-    let mut table = Table::new(&["axles", "block_axles", "in_theory", "forces_stay", "forces_follow"]);
+    let mut table = Table::new(&["axles", "block_axles", "amplification", "in_theory", "forces_stay", "forces_follow"]);
     for cell in &map.cells {
-        let factors = [cell.in_theory, cell.stays, cell.follows].map(short);
+        let factors = [cell.amplification, cell.in_theory, cell.stays, cell.follows].map(short);
         table.row([cell.axles, cell.block_axles].map(|axles| axles.to_string()).into_iter().chain(factors).collect());
     }
     table.text()

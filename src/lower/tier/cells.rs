@@ -36,6 +36,9 @@ const REACH: f64 = 6.0;
 /// Distance from the median / range of a group, within which a settlement counts as the median.
 const NEARLY: f64 = 0.1;
 
+/// Cells that part from others at a transition during a run, for the estimate: one in `transition_full.track`.
+const PARTED: usize = 1;
+
 /// Largest error of cells / settlement of the whole bed: `transition_short.track`, 20 axles, the worst of three
 /// packings (docs/validation.md, "The shortened scene in every tier").
 pub(super) const OF_CELLS: f64 = 0.29;
@@ -72,9 +75,15 @@ impl Tier for Cells {
         let (train, _) = blocks.kind(0);
         let headway_time = headway(scenario).map(|headway| headway / train.speed);
         let (cells, cell_of) = if beds.is_empty() { Default::default() } else { cells(draft, &beds) };
-        let bays = cells.iter().map(|cell| f64::from(cell.copies)).sum();
-        let (alone, trains) = (train.wheel_base() / train.speed, trains_of_cells(&blocks));
-        let cost = of_packings(scenario, cells_under_track(draft, PassingCells { bays, headway_time, alone, trains }));
+        let passing = PassingCells {
+            cells: cells.len() + PARTED * scenario.track.transitions.len(),
+            kinds: kinds(&cells),
+            bays: f64::from(scenario.solve.grains.cell_bays),
+            headway_time,
+            alone: train.wheel_base() / train.speed,
+            trains: trains_of_cells(&blocks),
+        };
+        let cost = of_packings(scenario, cells_under_track(draft, passing));
         refusals.extend(match asked {
             true => refused::of_cells(scenario),
             false => waiting::refusal(scenario).into_iter().collect(),
@@ -109,6 +118,12 @@ impl Tier for Cells {
     }
 }
 
+/// Number of cells that are built differently.
+pub(super) fn kinds(cells: &[CellPlan]) -> usize {
+    let is_first = |number: &usize| !cells[..*number].iter().any(|other| other.is_built_alike(&cells[*number]));
+    (0..cells.len()).filter(is_first).count()
+}
+
 /// The node of some cells, each for the seats that `cell_of` names.
 pub(super) fn node(
     draft: &Draft<'_>,
@@ -129,6 +144,7 @@ pub(super) fn node(
         time_step: scenario.solve.grains.step.map(|step| *step),
         added_inertia: ADDED,
         tolerance: *scenario.solve.grains.tolerance,
+        trains: draft.blocks.as_ref().map_or(0, |blocks| blocks.sequence.within(blocks.total)),
     }
 }
 

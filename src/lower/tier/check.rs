@@ -37,7 +37,9 @@ pub(super) fn check(draft: &Draft<'_>, blocks: u64) -> Check {
     let node = node(draft, beds, count as usize);
     let (train, _) = plan.kind(0);
     let passing = PassingCells {
-        bays: node.cells.iter().map(|cell| f64::from(cell.copies)).sum(),
+        cells: node.cells.len(),
+        kinds: cells::kinds(&node.cells),
+        bays: f64::from(scenario.solve.grains.cell_bays),
         headway_time: node.headway_time,
         alone: train.wheel_base() / train.speed,
         trains: trains_of_check(plan, blocks),

@@ -119,6 +119,7 @@ mod tests {
             time_step: None,
             added_inertia: 0.02,
             tolerance: 0.05,
+            trains: 10,
         }
     }
 

@@ -272,8 +272,9 @@ impl Live {
         let settled = |(book, jump): (&Book, &Option<Jump>)| book.settled + jump.map_or(0.0, |jump| jump.settled);
         let largest =
             self.books.iter().zip(&jumps).map(settled).fold(0.0, |most: f64, settled| most.max(settled.abs()));
+        let tolerance = node.tolerance * ((self.passed + trains) as f64 / node.trains as f64).min(1.0);
         let good = |((book, now), jump): ((&Book, &usize), Option<Jump>)| {
-            let bears = |jump: &Jump| *now > 0 && book.bears(jump, largest, node.tolerance);
+            let bears = |jump: &Jump| *now > 0 && book.bears(jump, largest, tolerance);
             jump.filter(|jump| *now as u64 >= trains || bears(jump))
         };
         self.books.iter().zip(computed).zip(jumps).map(good).collect()
@@ -301,10 +302,12 @@ impl Live {
             let mut cell = cell.lock().unwrap_or_else(PoisonError::into_inner);
             Ok((*number, cell.pass(&trains[*number], gravity)?))
         };
-        let passed = turns::each(&cells, threads, threads, one);
         let failed =
             |error: rayon::ThreadPoolBuildError| NodeError::Other { node: "cells".into(), why: error.to_string() };
-        passed.map_err(failed)?.into_iter().collect()
+        // one core a cell, and all cores for the cells that are left over
+        let (in_turns, last) = cells.split_at(cells.len() - cells.len() % threads);
+        let passed = turns::each(in_turns, threads, threads, one).map_err(failed)?;
+        passed.into_iter().chain(turns::each(last, last.len(), threads, one).map_err(failed)?).collect()
     }
 
     fn end_of_run(&mut self, jumps: Vec<Jump>, trains: u64) {

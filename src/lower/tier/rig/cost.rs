@@ -23,9 +23,8 @@ const LAST_STAGES: u32 = 3;
 const SET_DOWN: f64 = 0.15;
 /// Time in which the grains of cribs are poured and come to rest, s, at the step of a test.
 const POURING: f64 = 1.0;
-/// Pebble steps per second on two cores, for clumps of three pebbles, during packing and during a test
-/// (`docs/validation.md`).
-const PEBBLE_STEPS: [f64; 2] = [10e6, 20e6];
+/// Pebble steps per second on two cores, during packing and during a test (`benches/estimates.py`).
+const PEBBLE_STEPS: [f64; 2] = [16e6, 55e6];
 /// Time on one core / time on two cores.
 const SECOND_CORE: f64 = 1.7;
 
@@ -146,7 +145,9 @@ pub(in crate::lower::tier) fn grains_under_track(draft: &Draft<'_>, blocks: Opti
 /// Trains over cells of grains.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::lower::tier) struct PassingCells {
-    /// Total number of bays of all cells.
+    /// Number of cells, of those that are built differently, and of bays in a cell.
+    pub cells: usize,
+    pub kinds: usize,
     pub bays: f64,
     /// Time between the fronts of trains that follow each other, s; `None` if they run one by one.
     pub headway_time: Option<f64>,
@@ -159,6 +160,11 @@ pub(in crate::lower::tier) struct PassingCells {
 /// Additional time of a train that runs alone, and of every train, s.
 const BESIDE_ALONE: f64 = 0.1;
 const BESIDE_EACH: f64 = 0.04;
+/// Pebble steps per second of a cell on one core, and of building it on two (`benches/estimates.py`); time of a train on a
+/// cell that has both cores / on one core.
+const CELL_STEPS: f64 = 18e6;
+const BUILT_STEPS: f64 = 30e6;
+const ON_BOTH_CORES: f64 = 0.6;
 /// Trains that a cell computes: the first trains, and a share of the others; at least one in each block
 /// (`docs/validation.md`, cells).
 const FIRST_TRAINS: f64 = 12.0;
@@ -207,10 +213,16 @@ pub(in crate::lower::tier) fn cells_under_track(draft: &Draft<'_>, passing: Pass
     let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
     let building = BUILDING + if section.crib.is_some() { POURING } else { 0.0 };
     let train = BESIDE_EACH + passing.headway_time.unwrap_or(passing.alone + BESIDE_ALONE);
-    let test_steps = passing.bays * (building + passing.trains * train) / time_step;
-    let [cell_grains, cell_pebbles] = [grains + beside_grains, pebbles + beside_pebbles];
-    let seconds = 0.5 * pebbles * packing_steps / PEBBLE_STEPS[0] + cell_pebbles * test_steps / TRACK_PEBBLE_STEPS;
-    let [grains, pebbles] = [cell_grains, cell_pebbles].map(|count| passing.bays * count);
+    let [cell_grains, cell_pebbles] =
+        [grains + beside_grains, pebbles + beside_pebbles].map(|count| passing.bays * count);
+    let [built, passed] = [building, passing.trains * train].map(|time| time / time_step);
+    let packing = 0.5 * pebbles * packing_steps / PEBBLE_STEPS[0];
+    let placing = passing.kinds as f64 * cell_pebbles * built / BUILT_STEPS;
+    let turns = (passing.cells / 2) as f64 + (passing.cells % 2) as f64 * ON_BOTH_CORES;
+    let seconds = packing + placing + turns * cell_pebbles * passed / CELL_STEPS;
+    let cells = passing.cells as f64;
+    let test_steps = cells * (built + passed);
+    let [grains, pebbles] = [cell_grains, cell_pebbles].map(|count| cells * count);
     let (packings, least_packings) = (1, 1);
     cost(seconds, TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings, least_packings })
 }
