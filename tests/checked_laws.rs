@@ -145,7 +145,7 @@ fn a_check_that_cannot_be_made_is_refused_at_its_cause() {
     let without_grains = checked(1).replace("stone: 200 mm, ", "");
     let mixed = checked(1)
         .replace("traffic {", "train slow : ore { speed = 100 km/h }\ntraffic {")
-        .replace("trains = ore,", "trains = [ore, slow],");
+        .replace("trains = ore,", "trains = [ore: 50 %, slow: 50 %],");
     let messages = |text: &str| {
         let told = compiled(text).to_run().diagnostics;
         let errors = told.iter().filter(|d| d.is_error());

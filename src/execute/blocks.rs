@@ -1,6 +1,6 @@
 //! The schedule of blocks: static state, passage, settlement, block by block, until the axles are done (paper, Fig. 3).
 
-use super::comparing::Comparison;
+use super::comparison::Comparison;
 use super::event::{Between, Checkpoint, Event, Listener, ScheduleState, tell_of_trains, tell_stage};
 use super::exchange::{Exchange, Work};
 use super::machine::{Ending, Machine, RunError};

@@ -1,29 +1,11 @@
 //! A run compares one of its passages with a finer one, and goes on with finer passages where both differ too much.
 
 use super::blocks::Run;
+use super::comparison::Comparison;
 use super::exchange::{Exchange, Work};
 use super::machine::RunError;
 use super::step::{BlockMeasures, largest};
 use crate::graph::{Block, Clock, Compared, Runner};
-use serde::{Deserialize, Serialize};
-
-/// A passage as planned beside one with twice the elements and shorter steps.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Comparison {
-    /// Axles that had passed.
-    pub axles: u64,
-    /// Largest difference of the settlement that one train adds / its largest settlement.
-    pub difference: f64,
-    /// The largest difference with which the run goes on as planned.
-    pub limit: f64,
-}
-
-impl Comparison {
-    /// Whether the run goes on with the finer passages.
-    pub fn refines(&self) -> bool {
-        self.difference > self.limit
-    }
-}
 
 impl Run<'_, '_> {
     /// Compares the passage of an exchange if that is due, and counts the work; `None` if it is not due, and if the

@@ -40,9 +40,9 @@ pub const BLOCKS: u32 = 3;
 /// Amplitude of the sawtooth / largest deflection of a support under the train: too small to lift a sleeper.
 const AMPLITUDE: f64 = 2e-3;
 
-/// Disturbances at the first exchange after each of `counts` axles, in blocks of each of these numbers of trains. A block
-/// that would pass the end of the traffic is left out. `tell` gets the number of measured disturbances. Fails for a
-/// track on grains, whose settlement cannot be predicted.
+/// Disturbances at the first exchange after each of `counts` axles, in blocks of each of these numbers of trains. A
+/// block that would pass the end of the traffic is left out. `tell` hears of each disturbance that is measured. Fails
+/// for a track on grains, whose settlement cannot be predicted.
 pub fn disturbances(
     graph: &Graph,
     counts: &[u64],

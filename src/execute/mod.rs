@@ -5,6 +5,7 @@
 
 mod blocks;
 mod comparing;
+mod comparison;
 mod disturbed;
 mod equilibrium;
 mod event;
@@ -20,7 +21,7 @@ mod step;
 mod tests_of_beds;
 mod timed;
 
-pub use comparing::Comparison;
+pub use comparison::Comparison;
 pub use disturbed::{BLOCKS, Disturbance, blocks_of_run, disturbances};
 pub use equilibrium::at_rest;
 pub use event::{Between, Both, Checkpoint, Event, Listener, ScheduleState};

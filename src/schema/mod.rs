@@ -1,6 +1,7 @@
 //! The vocabulary of the language: every kind, field, word, unit, range and default.
 //!
-//! Checking, defaults and `trackbed docs` all read this table; a field is added in one place: `kinds.rs`, or the file of its kind.
+//! Checking, defaults and `trackbed docs` all read this table; a field is added in one place: `kinds.rs`, or the file
+//! of its kind.
 
 mod called;
 mod docs;

@@ -59,8 +59,8 @@ impl ExchangeMap {
         self.row(axles).map(|cell| cell.block_axles).max().unwrap_or(0)
     }
 
-    /// The block of the scene nearest to its limit: axles before it, its axles, and limit / axles. Where no block of the
-    /// map grows, the longest one is the least limit.
+    /// The block of the scene nearest to its limit: axles before it, its axles, and limit / axles. Where no block of
+    /// the map grows, the longest one is the least limit.
     pub fn margin(&self) -> Option<([u64; 2], f64)> {
         let limit = |axles: u64| self.limit(axles).unwrap_or(self.longest(axles) as f64);
         let margin = |block: &[u64; 2]| (*block, limit(block[0]) / block[1] as f64);

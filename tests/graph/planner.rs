@@ -122,7 +122,7 @@ fn a_pass_changes_the_plan_and_can_be_left_out() {
     let needed = Planner::default().with_pass(Box::new(Coarse)).without("tier").err().unwrap();
     assert_eq!(
         (needed.name.as_str(), needed.optional),
-        ("tier", vec!["mesh", "exchange", "bays", "share", "record", "coarse"])
+        ("tier", vec!["mesh", "exchange", "compare", "bays", "share", "record", "coarse"])
     );
 }
 

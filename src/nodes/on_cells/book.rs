@@ -73,9 +73,11 @@ impl Book {
     }
 
     /// Whether a jump is accurate enough: its error and the earlier errors, relative to the largest settlement of all
-    /// cells, m. `tolerance` is the part of the tolerance for the trains so far: if early blocks used up all of it, the
-    /// long blocks after them would have to compute every train. Settlement matters because it moves forces to other sleepers. If it is small compared with the
+    /// cells, m. Settlement matters because it moves forces to other sleepers. If it is small compared with the
     /// compression under the train, it moves no forces, and the error is compared with the compression.
+    ///
+    /// `tolerance` is the part of the tolerance for the trains so far: if early blocks used up all of it, the long
+    /// blocks after them would have to compute every train.
     pub fn bears(&self, jump: &Jump, largest: f64, tolerance: f64) -> bool {
         self.error + jump.error <= tolerance * largest.max(self.load / self.stiffness)
     }
