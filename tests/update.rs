@@ -241,7 +241,7 @@ fn several_scenes_at_once_are_each_alone() {
 #[test]
 fn a_disturbance_grows_in_blocks_beyond_the_limit_unless_the_forces_follow() {
     let (from, to) = every("32 axles");
-    let rate = STEADY.1.replace("gamma = 2 mm", "gamma = 10 mm");
+    let rate = STEADY.1.replace("gamma = 2 mm", "gamma = 100 mm");
     let compiled = compiled(&[(STEADY.0, &rate), (from, &to), ("[0, 100, 256]", "[0, 256]")]);
     let planned = Planned::new(compiled.graph.as_ref().unwrap(), &compiled.origins).unwrap();
     let map = exchange_map(&planned, &mut || ()).unwrap().expect("a law");
@@ -251,7 +251,7 @@ fn a_disturbance_grows_in_blocks_beyond_the_limit_unless_the_forces_follow() {
     // a law without hardening: A is proportional to the length of the block
     let first: Vec<f64> =
         map.cells.iter().filter(|cell| cell.axles == 0).map(|c| c.amplification / c.block_axles as f64).collect();
-    assert!(first.iter().all(|per_axle| (per_axle / first[0] - 1.0).abs() < 0.05), "{first:?}");
+    assert!(first.iter().all(|per_axle| (per_axle / first[0] - 1.0).abs() < 0.1), "{first:?}");
     assert!(map.largest_following() < 1.0, "{}", map.largest_following());
     let limit = map.limit(0).expect("a limit");
     let (block, margin) = map.margin().unwrap();

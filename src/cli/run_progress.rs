@@ -85,7 +85,7 @@ impl Way {
 impl Listener for Shown {
     fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
         match event {
-            Event::Compared(compared) if compared.refines() => {
+            Event::Compared(compared) if compared.exceeds() => {
                 terminal::note(&format!("{}\n", compared_passage(compared)));
             }
             Event::Packing(progress) if self.tests => pack::show_share(&mut self.bar, progress.share),

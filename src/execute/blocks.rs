@@ -166,6 +166,9 @@ impl Run<'_, '_> {
             }
             here = going!(self.block(here));
         }
+        if let Some(compared) = self.compare(&mut here, &mut BlockMeasures::default())? {
+            tell!(self, Event::Compared(&compared));
+        }
         going!(self.record_last(&here));
         let passages: Vec<&PassageOutcome> = here.passages().collect();
         let (before, after) = (&here.settlement, &here.settlement);

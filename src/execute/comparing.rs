@@ -17,7 +17,10 @@ impl Run<'_, '_> {
     ) -> Result<Option<Comparison>, RunError> {
         let is_due = |compared: &Compared| self.compared.is_none() && here.axles >= compared.after;
         let Some(Compared { limit, .. }) = self.pair.blocks.compared.filter(is_due) else { return Ok(None) };
-        let Some(runner) = self.pair.blocks.block(here.axles, 1).runners().first().copied() else { return Ok(None) };
+        let at_the_end = here.axles >= self.pair.blocks.total;
+        let blocks = self.pair.blocks;
+        let runners = if at_the_end { blocks.leading() } else { blocks.block(here.axles, 1).runners() };
+        let Some(runner) = runners.first().copied() else { return Ok(None) };
         self.pair.ensure(here, &[runner])?;
         let at = |cause| RunError::node(Clock::Axles(here.axles), cause);
         let finer = self.pair.track.finer().map_err(at)?;
@@ -30,7 +33,7 @@ impl Run<'_, '_> {
             return Ok(None);
         }
         let apart: Vec<f64> = planned.iter().zip(&fine).map(|(a, b)| a - b).collect();
-        let found = Comparison { axles: here.axles, difference: largest(&apart) / settled, limit };
+        let found = Comparison { axles: here.axles, difference: largest(&apart) / settled, limit, at_the_end };
         if found.refines() {
             self.pair.track = finer;
             work.add(here, Work::default());

@@ -11,11 +11,18 @@ pub struct Comparison {
     pub difference: f64,
     /// The largest difference with which the run goes on as planned.
     pub limit: f64,
+    /// Whether no block was left: the passages of a run with long blocks are compared after its last one.
+    pub at_the_end: bool,
 }
 
 impl Comparison {
+    /// Whether both differ by more than the limit.
+    pub fn exceeds(&self) -> bool {
+        self.difference > self.limit
+    }
+
     /// Whether the run goes on with the finer passages.
     pub fn refines(&self) -> bool {
-        self.difference > self.limit
+        self.exceeds() && !self.at_the_end
     }
 }

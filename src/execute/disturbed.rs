@@ -26,7 +26,8 @@ pub struct Disturbance {
     /// Axles that had passed, and axles of a block.
     pub axles: u64,
     pub block_axles: u64,
-    /// A of the first block, and growth per block over [`BLOCKS`] blocks, in theory.
+    /// The largest A of the first block over all shapes of a disturbance, and growth of the sawtooth per block over
+    /// [`BLOCKS`] blocks, in theory.
     pub amplification: f64,
     pub in_theory: f64,
     /// Growth per block where the forces stay over the block, measured over [`BLOCKS`] blocks.
@@ -130,24 +131,24 @@ impl Here<'_> {
         }
     }
 
-    /// A of the first block of so many trains, and growth per block, from statics and the law.
+    /// The largest A of the first block of so many trains, and growth of the sawtooth per block, from statics and the
+    /// law.
     fn in_theory(&self, added: &[f64], trains: u64) -> Result<[f64; 2], RunError> {
         let (mut pair, mut here) = self.begun(None)?;
-        let sharp = bends(added);
-        let square: f64 = sharp.iter().map(|bend| bend * bend).sum();
-        let mut amplifications = Vec::new();
+        let (mut wave, mut amplification) = (added.to_vec(), None);
         for _ in 0..BLOCKS {
             let block = pair.blocks.block(here.axles, trains);
             pair.ensure(&mut here, &block.runners())?;
             let parts = pair.blocks.parts(&block);
-            let changed = changed(&pair, &here, &parts, added)?;
-            let product: f64 = sharp.iter().zip(bends(&changed)).map(|(a, b)| a * b).sum();
-            amplifications.push(-product / square);
+            if amplification.is_none() {
+                amplification = Some(largest_amplification(&pair, &here, &parts, added)?);
+            }
+            let change = changed(&pair, &here, &parts, &wave)?;
+            wave.iter_mut().zip(change).for_each(|(wave, change)| *wave += change);
             pair.advance(here.axles, &here.loads(&parts), &mut |_| ControlFlow::Continue(()))?;
             here = Exchange::new(here.axles + block.axles, pair.settlement(), Vec::new());
         }
-        let growth: f64 = amplifications.iter().map(|amplification| (1.0 - amplification).abs()).product();
-        Ok([amplifications[0], growth.powf(1.0 / f64::from(BLOCKS))])
+        Ok([amplification.unwrap_or(0.0), growth_per_block(added, &wave)])
     }
 
     /// Growth of the sawtooth per block, measured over [`BLOCKS`] blocks.
@@ -155,11 +156,11 @@ impl Here<'_> {
         let level = self.after(None, trains, follows)?;
         let disturbed = self.after(Some(added.to_vec()), trains, follows)?;
         let end: Vec<f64> = disturbed.iter().zip(&level).map(|(a, b)| a - b).collect();
-        let [start, end] = [added, &end].map(|values| bends(values).iter().map(|v| v * v).sum::<f64>().sqrt());
-        Ok((end / start).powf(1.0 / f64::from(BLOCKS)))
+        Ok(growth_per_block(added, &end))
     }
 
-    /// A sawtooth at the seats that settle and that every wheel passes, m.
+    /// A sawtooth at the seats that settle and that every wheel passes, m; on a track shorter than that at all that
+    /// settle.
     fn added(&self) -> Result<Vec<f64>, RunError> {
         let (pair, mut here) = self.begun(None)?;
         let runners = self.blocks.block(here.axles, 1).runners();
@@ -168,9 +169,11 @@ impl Here<'_> {
         let deflection = peaks.map(|peak| peak.deflection).fold(0.0, f64::max);
         let (track, passed) = (self.machine.graph.track(), self.blocks.passed());
         let seats = track.map_or(&[] as &[_], |track| &track.seats);
+        let moves = |seat: &&TrackSeat| seat.is_ballasted() && passed.contains(&seat.x);
+        let any = seats.iter().any(|seat| moves(&seat));
         let tooth = |(number, seat): (usize, &TrackSeat)| {
             let sign = if number % 2 == 0 { 1.0 } else { -1.0 };
-            if seat.is_ballasted() && passed.contains(&seat.x) { sign * AMPLITUDE * deflection } else { 0.0 }
+            if moves(&seat) || !any && seat.is_ballasted() { sign * AMPLITUDE * deflection } else { 0.0 }
         };
         Ok(seats.iter().enumerate().map(tooth).collect())
     }
@@ -214,6 +217,36 @@ impl Here<'_> {
         let pair = Pair { blocks: self.blocks, track, ground, check: None, control: Control::default(), runs };
         Ok((pair, Exchange::new(self.axles(), settlement, Vec::new())))
     }
+}
+
+fn growth_per_block(start: &[f64], end: &[f64]) -> f64 {
+    let [start, end] = [start, end].map(|values| length(&bends(values)));
+    (end / start).powf(1.0 / f64::from(BLOCKS))
+}
+
+fn length(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum::<f64>().sqrt()
+}
+
+/// Steps of the power iteration for the largest A.
+const ITERATIONS: u32 = 10;
+
+/// The largest A of a block over all shapes of a disturbance, by power iteration from a sawtooth. Sleepers beside a
+/// structure and on stiff supports have more than the mean.
+fn largest_amplification(pair: &Pair<'_>, here: &Exchange, parts: &[Block], added: &[f64]) -> Result<f64, RunError> {
+    let size = length(added);
+    let (mut wave, mut amplification) = (added.to_vec(), 0.0);
+    for _ in 0..ITERATIONS {
+        let change = changed(pair, here, parts, &wave)?;
+        let product: f64 = wave.iter().zip(&change).map(|(wave, change)| wave * change).sum();
+        amplification = -product / (size * size);
+        let scale = size / length(&change);
+        if !scale.is_finite() {
+            return Ok(0.0);
+        }
+        wave = change.iter().map(|change| -scale * change).collect();
+    }
+    Ok(amplification)
 }
 
 /// Change of the settlement by a block if the track is moved (m), with the forces of standing bogies, m.

@@ -6,15 +6,18 @@ use crate::units::percent;
 
 /// One sentence: how far both passages differ, and what follows.
 pub fn compared_passage(compared: &Comparison) -> String {
-    let Comparison { axles, difference, limit } = compared;
-    let follows = match compared.refines() {
-        true => format!(", more than {}: from there on the run took the finer passages", percent(*limit)),
-        false => format!(", within {}", percent(*limit)),
+    let Comparison { axles, difference, limit, at_the_end } = compared;
+    let within = if compared.exceeds() { "more than" } else { "within" };
+    let follows = match (compared.exceeds(), at_the_end) {
+        (false, _) => "",
+        (true, false) => ": from there on the run took the finer passages",
+        (true, true) => ": write `elements_per_bay = 4` and `time_step = 0.1 ms`",
     };
     format!(
         "after {axles} axles a passage was computed again with twice the elements and shorter steps: the settlement that \
-         a train adds differs by {}{follows}",
-        percent(*difference)
+         a train adds differs by {}, {within} {}{follows}",
+        percent(*difference),
+        percent(*limit)
     )
 }
 
@@ -29,8 +32,10 @@ mod tests {
 
     #[test]
     fn the_sentence_says_what_follows() {
-        let of = |difference| compared_passage(&Comparison { axles: 40, difference, limit: 0.005 });
-        assert!(of(0.0003).ends_with("differs by 0.03 %, within 0.5 %"), "{}", of(0.0003));
-        assert!(of(0.012).ends_with("1.2 %, more than 0.5 %: from there on the run took the finer passages"));
+        let of =
+            |difference, at_the_end| compared_passage(&Comparison { axles: 40, difference, limit: 0.005, at_the_end });
+        assert!(of(0.0003, false).ends_with("differs by 0.03 %, within 0.5 %"), "{}", of(0.0003, false));
+        assert!(of(0.012, false).ends_with("1.2 %, more than 0.5 %: from there on the run took the finer passages"));
+        assert!(of(0.012, true).ends_with("more than 0.5 %: write `elements_per_bay = 4` and `time_step = 0.1 ms`"));
     }
 }

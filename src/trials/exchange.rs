@@ -23,7 +23,7 @@ const COUNTS: [f64; 4] = [0.0, 0.02, 0.1, 0.3];
 const SIZES: usize = 8;
 /// A at which a disturbance neither grows nor decays.
 const GROWS: f64 = 2.0;
-/// Growth that theory and measurement may disagree about: near the limit the map tells neither.
+/// Distance from the limit, in growth and in A, within which theory and measurement may disagree.
 const NEAR: f64 = 0.15;
 
 impl ExchangeMap {
@@ -74,7 +74,8 @@ impl ExchangeMap {
             let ((theory_grows, theory_decays), (grows, decays)) = (grows(cell.in_theory), grows(cell.stays));
             theory_grows && decays || theory_decays && grows
         };
-        self.cells.iter().filter(differ).count()
+        let is_clear = |cell: &&Disturbance| (cell.amplification / GROWS - 1.0).abs() > NEAR;
+        self.cells.iter().filter(is_clear).filter(differ).count()
     }
 }
 

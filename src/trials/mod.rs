@@ -1,9 +1,9 @@
 //! Trials of numerics: one scene computed with many settings.
 //!
 //! [`chart`] runs one passage over the settled track with many numerics and sets error against time; [`stability`]
-//! tries extreme numerics, contacts and voids, and a list of hard scenes, and reports the result of each;
-//! [`exchange_map`] tries lengths of blocks. [`grains`] measures the cost of steps of a bed of grains. [`runs`] compares
-//! whole runs of a scene by every tier. [`specimens`] fits a settlement law to the grains of a scene.
+//! tries extreme numerics, contacts and voids, and a list of hard scenes, and reports the result of each.
+//! [`exchange_map`] tries lengths of blocks. [`grains`] measures the cost of steps of a bed of grains. [`runs`]
+//! compares whole runs of a scene by every tier. [`specimens`] fits a settlement law to the grains of a scene.
 
 pub mod chart;
 mod clock;

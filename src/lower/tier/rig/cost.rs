@@ -160,8 +160,8 @@ pub(in crate::lower::tier) struct PassingCells {
 /// Additional time of a train that runs alone, and of every train, s.
 const BESIDE_ALONE: f64 = 0.1;
 const BESIDE_EACH: f64 = 0.04;
-/// Pebble steps per second of a cell on one core, and of building it on two (`benches/estimates.py`); time of a train on
-/// a cell that has both cores / on one core.
+/// Pebble steps per second of a cell on one core, and of building it on two (`benches/estimates.py`); time of a train
+/// on a cell that has both cores / on one core.
 const CELL_STEPS: f64 = 18e6;
 const BUILT_STEPS: f64 = 30e6;
 const ON_BOTH_CORES: f64 = 0.6;
