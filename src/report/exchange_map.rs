@@ -11,6 +11,9 @@ const LEFT: f64 = 84.0;
 const TOP: f64 = 92.0;
 const GAP: f64 = 60.0;
 
+/// Which growth of a cell a panel shows.
+type Growth = fn(&Disturbance) -> f64;
+
 /// The whole picture.
 pub fn exchange_map_svg(map: &ExchangeMap, title: &str) -> String {
     let mut counts: Vec<u64> = map.cells.iter().map(|cell| cell.axles).collect();
@@ -23,7 +26,7 @@ pub fn exchange_map_svg(map: &ExchangeMap, title: &str) -> String {
     svg.text("strong", (16.0, 24.0), Anchor::Start, &format!("{title}: exchange of forces and settlement"));
     let under = "Growth of a sawtooth in the settlement per block: measured, and in theory below. \u{25b2} grows.";
     svg.text("small muted", (16.0, 42.0), Anchor::Start, under);
-    let panels: [(&str, fn(&Disturbance) -> f64); 2] = [
+    let panels: [(&str, Growth); 2] = [
         ("forces stay over the block", |cell| cell.stays),
         ("forces follow within the block (adaptive)", |cell| cell.follows),
     ];
