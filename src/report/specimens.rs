@@ -27,7 +27,7 @@ pub fn specimens_svg(laws: &[Fitted<'_>]) -> String {
     let mut svg = Svg::default();
     for (number, fitted) in laws.iter().enumerate() {
         let top = number as f64 * (TITLE + HEIGHT);
-        svg.text("strong", (0.0, top + 16.0), Anchor::Start, &fitted.title);
+        svg.text("strong", (6.0, top + 16.0), Anchor::Start, &fitted.title);
         let frame = Frame { x: 0.0, y: top + TITLE, width: WIDTH, height: HEIGHT };
         chart(fitted).draw(&mut svg, &format!("plane-specimens-{number}"), frame);
     }
