@@ -63,12 +63,12 @@ impl Book {
     pub fn jump(&self, law: Option<&Hardening>, now: usize, passed: u64, trains: u64) -> Option<Jump> {
         let known = self.known();
         match law {
-            Some(law) if !known.is_empty() => Some(law.settled(known, now, passed, trains)),
-            _ if now as u64 >= trains => {
+            Some(law) => law.settled(known, now, passed, trains),
+            None if now as u64 >= trains => {
                 let settled = known[known.len() - now..].iter().map(|train| train.added).sum();
                 Some(Jump { settled, error: 0.0 })
             }
-            _ => None,
+            None => None,
         }
     }
 
