@@ -33,6 +33,17 @@ const RUN_TIME: [(Code, &str); 19] = [
 /// Pages whose failing example is no scene: the bytes of the file are the mistake.
 const NOT_TEXT: [Code; 1] = [Code::E0102];
 
+/// Limits of methods, and the maps that show them.
+const MAPS: [(Code, &str); 7] = [
+    (Code::E0603, "stability.svg"),
+    (Code::E0703, "stability.svg"),
+    (Code::L1005, "stability.svg"),
+    (Code::E0807, "exchange_transition.svg"),
+    (Code::L1006, "exchange_transition.svg"),
+    (Code::L1020, "grains_stability.svg"),
+    (Code::L1035, "grains_short.svg"),
+];
+
 /// A fenced block: what stands behind the fence, and its lines.
 struct Block<'a> {
     kind: &'a str,
@@ -221,4 +232,14 @@ fn a_checkpoint_of_another_scene_is_refused() {
     let kept = open("one", trackbed::store::Mode::Resume).unwrap();
     let mut same = trackbed::results::RunRecorder::new(&scenario, &graph).kept_in(&kept);
     assert!(same.resume().unwrap().is_some());
+}
+
+#[test]
+fn the_page_of_a_limit_names_the_map_that_shows_it() {
+    for (code, map) in MAPS {
+        let (page, map) = (code.page().replace('\n', " "), format!("docs/charts/{map}"));
+        assert!(page.contains(&format!("`{map}`")), "{code}: {map}");
+        assert!(page.contains("`trackbed stability FILE` draws it") || page.contains("`trackbed stability FILE` maps"), "{code}");
+        assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join(&map).is_file(), "{map}");
+    }
 }

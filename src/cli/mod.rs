@@ -35,6 +35,7 @@ mod run_progress;
 mod running;
 mod scene;
 mod stability;
+mod stability_grains;
 mod stored;
 mod study;
 mod study_elsewhere;

@@ -1,13 +1,16 @@
 //! `trackbed stability`: where a passage fails, and whether it says so; in which blocks of axles a disturbance of the
-//! settlement grows.
+//! settlement grows; at which steps the bed of grains runs away.
 
 use super::scene::SceneArguments;
 use super::subject::{self, Subject};
-use super::{Format, Outcome, progress, terminal};
+use super::{Format, Outcome, progress, stability_grains, terminal};
 use crate::execute::BLOCKS;
 use crate::report;
 use crate::trials::stability::stability;
-use crate::trials::{ExchangeMap, Stability, exchange_csv, exchange_map, most_cells, stability_csv};
+use crate::trials::{
+    ExchangeMap, GrainMap, Stability, exchange_csv, exchange_map, grain_speeds_csv, grain_steps_csv, most_cells,
+    stability_csv,
+};
 use crate::units::number;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -19,9 +22,13 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Where `stability.csv`, `stability.svg`, `exchange.csv` and `exchange.svg` go.
+    /// Where the tables and pictures go: `stability`, `exchange` for a scene by a law, `grain_steps`, `grain_speeds` and
+    /// `grains` for a scene on grains.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Where packed beds and cells are kept, by what made them.
+    #[arg(long, value_name = "DIR", env = "TRACKBED_CACHE")]
+    cache: Option<PathBuf>,
     #[arg(long, value_enum, default_value = "human")]
     format: Format,
 }
@@ -55,6 +62,21 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         let picture = report::exchange_map_svg(map, &stability.title);
         files.extend([("exchange.csv", exchange_csv(map)), ("exchange.svg", picture)]);
     }
+    let grains = if subject.planned.graph.has_grains_under_track() {
+        match stability_grains::mapped(&arguments.scene, arguments.cache.as_deref()) {
+            Ok(grains) => grains,
+            Err(outcome) => return outcome,
+        }
+    } else {
+        None
+    };
+    if let Some(map) = &grains {
+        files.extend([
+            ("grain_steps.csv", grain_steps_csv(map)),
+            ("grain_speeds.csv", grain_speeds_csv(map)),
+            ("grains.svg", report::grain_map_svg(map, &stability.title)),
+        ]);
+    }
     if let Err(outcome) = subject::write(arguments.out.as_deref(), &files) {
         return outcome;
     }
@@ -62,19 +84,23 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Format::Human => {
             terminal::out(&text(&stability));
             exchange.iter().for_each(|map| terminal::out(&told(map)));
+            grains.iter().for_each(|map| terminal::out(&stability_grains::told(map)));
             Outcome::Fine
         }
-        Format::Json => subject::json(&Answer { stability: &stability, exchange: exchange.as_ref() }),
+        Format::Json => {
+            subject::json(&Answer { stability: &stability, exchange: exchange.as_ref(), grains: grains.as_ref() })
+        }
     };
     if stability.wrong() > 0 { Outcome::Failed } else { outcome }
 }
 
-/// The map of passages, and the map of the exchange if the scene has one.
+/// The map of passages, and the maps of the exchange and of the grains if the scene has them.
 #[derive(Serialize)]
 struct Answer<'a> {
     #[serde(flatten)]
     stability: &'a Stability,
     exchange: Option<&'a ExchangeMap>,
+    grains: Option<&'a GrainMap>,
 }
 
 fn exchanged(subject: &Subject<'_>) -> Result<Option<ExchangeMap>, Outcome> {

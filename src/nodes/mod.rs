@@ -24,7 +24,7 @@ pub use check::CheckingCells;
 pub use error::NodeError;
 pub use grains::{BedUnderActuators, TestState, Tested};
 pub use law::LawGround;
-pub use on_cells::{CellGround, Checked, Parts as CellParts, Passed, Specimen, TrainForces};
+pub use on_cells::{CellGround, Checked, Parts as CellParts, Passed, Specimen, StepOfCell, TrainForces};
 pub use on_grains::{
     BedUnderTrack, Following, GrainGround, Parted, Parts as GrainParts, PassageEnergy, Riders, Stage, Telling,
     TimedSteps, Told, VolumeSample,

@@ -1,8 +1,8 @@
 //! The tables of a chart and a map as CSV: one row a passage, SI units, empty if there is no value.
 
-use super::ExchangeMap;
 use super::chart::{Chart, Outcome};
 use super::stability::Stability;
+use super::{ExchangeMap, GrainMap};
 
 /// One row a passage of the chart.
 pub fn chart_csv(chart: &Chart) -> String {
@@ -133,6 +133,36 @@ pub fn exchange_csv(map: &ExchangeMap) -> String {
     for cell in &map.cells {
         let factors = [cell.amplification, cell.in_theory, cell.stays, cell.follows].map(short);
         table.row([cell.axles, cell.block_axles].map(|axles| axles.to_string()).into_iter().chain(factors).collect());
+    }
+    table.text()
+}
+
+/// One row a step at which a bed was tried.
+pub fn grain_steps_csv(map: &GrainMap) -> String {
+    let mut table = Table::new(&["inertia_allowed", "inertia_added", "step_over_limit", "step_s", "stopped"]);
+    for trial in &map.steps {
+        let values = [trial.allowed.to_string(), short(trial.added), trial.share.to_string(), short(trial.step)];
+        table.row(values.into_iter().chain([trial.stopped.clone().unwrap_or_default()]).collect());
+    }
+    table.text()
+}
+
+/// One row a speed at which the train passed the bed.
+pub fn grain_speeds_csv(map: &GrainMap) -> String {
+    let mut table = Table::new(&[
+        "inertia_allowed",
+        "speed_m_per_s",
+        "stiffness_N_per_m",
+        "settled_m",
+        "change_of_stiffness",
+        "change_in_theory",
+    ]);
+    for trial in &map.speeds {
+        let changes = [map.change(trial.allowed, trial.factor), map.change_in_theory(trial.allowed, trial.factor)];
+        let mut row = vec![trial.allowed.to_string(), (trial.factor * map.speed).to_string()];
+        row.extend([short(trial.stiffness), short(trial.settled)]);
+        row.extend(changes.map(|change| change.map_or(String::new(), short)));
+        table.row(row);
     }
     table.text()
 }

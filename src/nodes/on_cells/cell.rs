@@ -87,11 +87,20 @@ impl Cell {
 
     /// Stiffness under a static load on all sleepers, N/m. It is measured on a copy, because a load compacts the bed.
     pub fn pressed(mut self, gravity: f64) -> Result<f64, NodeError> {
-        self.bed.set_damping(DAMPING);
         let before = self.level();
+        self.press(gravity)?;
+        Ok(PRESS / (self.level() - before))
+    }
+
+    /// Puts a static load on all sleepers.
+    pub fn press(&mut self, gravity: f64) -> Result<(), NodeError> {
+        let damping = self.bed.damping();
+        self.bed.set_damping(DAMPING);
         let forces: Vec<f64> = self.forces.iter().map(|force| force + PRESS).collect();
         self.go_to(&forces, PRESSING, gravity)?;
-        Ok(PRESS / (self.level() - before))
+        self.bed.set_damping(damping);
+        self.drive(&self.constant(&self.forces), gravity);
+        Ok(())
     }
 
     /// Lets one train pass.
@@ -186,7 +195,7 @@ impl Cell {
     }
 
     /// Adds the inertia that the contacts of now need for the step, and takes the step that the sleepers bear too, s.
-    fn hold(&mut self) -> Result<f64, NodeError> {
+    pub fn hold(&mut self) -> Result<f64, NodeError> {
         Stride { step: self.stride, sharing: SHARING }.hold(&mut self.bed)?;
         let of_sleeper = |wall: &WallId| {
             let wall = self.bed.wall(*wall);

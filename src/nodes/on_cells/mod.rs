@@ -25,7 +25,7 @@ pub use forces::TrainForces;
 use hardening::Jump;
 use layout::Layout;
 use serde::{Deserialize, Serialize};
-pub use specimen::Specimen;
+pub use specimen::{Specimen, StepOfCell};
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 

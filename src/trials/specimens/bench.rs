@@ -116,6 +116,21 @@ impl<'a> Bench<'a> {
         Ok(Curve { trials, peaks: program.into_iter().map(|exposure| exposure.peaks).collect(), settled, stiffness })
     }
 
+    /// Largest inertia added / mass of a bed that the scene allows.
+    pub fn added_inertia(&self) -> f64 {
+        self.parts.cells.added_inertia
+    }
+
+    /// A cell that no train has passed.
+    pub fn specimen(&self, cell: usize) -> Result<Specimen, NodeError> {
+        Specimen::build(self.parts, cell, &mut |_, _| ControlFlow::Continue(()))
+    }
+
+    /// The forces of the train of the scene on a cell.
+    pub fn train(&self, cell: usize) -> Result<TrainForces, NodeError> {
+        Ok(self.exposure(cell, Trial::OF_SCENE)?.train)
+    }
+
     /// What the trains of a program bring to a cell. Trains with equal trials need one passage.
     fn exposures(&self, cell: usize, program: &[Trial]) -> Result<Vec<Exposure>, NodeError> {
         let mut found: Vec<Exposure> = Vec::new();

@@ -10,6 +10,11 @@ pub struct Trial {
     pub void: f64,
 }
 
+impl Trial {
+    /// The train of the scene over a sleeper without a void.
+    pub const OF_SCENE: Trial = Trial { factor: 1.0, void: 0.0 };
+}
+
 /// The range that a law must cover.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ranges {
