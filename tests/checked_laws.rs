@@ -9,6 +9,7 @@ use trackbed::diag::Code;
 use trackbed::execute::{Checkpoint, Event, Executor, Listener};
 use trackbed::graph::Graph;
 use trackbed::nodes::Checked;
+use trackbed::scenario::Tier;
 use trackbed::store::Beds;
 
 mod common {
@@ -152,7 +153,63 @@ fn a_check_that_cannot_be_made_is_refused_at_its_cause() {
         errors.map(|d| (d.code, d.message.clone())).collect::<Vec<_>>()
     };
     let told = messages(&without_grains);
+    let refused = compiled(&without_grains).to_run();
+    let place = refused.diagnostics.iter().find(|d| d.is_error()).map(|d| refused.sources.text(d.labels[0].span));
+    assert_eq!(place, Some("1"));
     assert!(matches!(&told[..], [(Code::E0604, why)] if why.contains("no section has a layer of grains")), "{told:?}");
     let told = messages(&mixed);
     assert!(matches!(&told[..], [(Code::E0604, why)] if why.contains("trains of several kinds")), "{told:?}");
+}
+
+/// The small track whose planner chooses the law, within a wide tolerance, and has it checked.
+fn chosen(tolerance: &str) -> String {
+    checked(0)
+        .replace("substructure = law, law = own, check_cells = 0,", "law = own, budget = 100 h,")
+        .replace("tolerance = 20 %", &format!("tolerance = {tolerance}"))
+}
+
+#[test]
+fn a_law_that_the_planner_chooses_is_checked() {
+    // the law states 5 %, and cells 29 %
+    let found = compiled(&chosen("40 %"));
+    let next = found.next_tier.expect("a check");
+    assert_eq!(next.tier, Tier::Cells);
+    assert!((next.limit - 0.11).abs() < 1e-9, "{next:?}");
+    let graph = found.graph.unwrap();
+    assert_eq!(graph.check().map(|node| node.cells.len()), Some(2));
+    let why = &graph.decisions.iter().find(|decision| decision.pass == "budget").unwrap().why;
+    assert!(why.contains("part by more than 11 % of the largest settlement"), "{why}");
+
+    let next = |text: &str| compiled(text).next_tier;
+    assert_eq!(next(&chosen("30 %")), None, "cells are chosen, and nothing checks them");
+    assert_eq!(next(&chosen("40 %").replace("budget", "check_cells = 0, budget")), None, "the scene wants no check");
+    assert_eq!(next(&chosen("40 %").replace("budget", "substructure = law, budget")), None, "the scene has decided");
+}
+
+#[test]
+fn a_run_begins_again_on_grains_where_its_law_parts_from_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, out) = (folder.path().join("scene.track"), folder.path().join("out"));
+    fs::write(&file, chosen("40 %")).unwrap();
+    let cache = folder.path().join("beds");
+    let arguments = |more: &[&str]| {
+        let own = ["run", file.to_str().unwrap(), "--out", out.to_str().unwrap(), "--cache", cache.to_str().unwrap()];
+        trackbed(&[&own[..], more].concat())
+    };
+    let run = arguments(&[]);
+    assert!(run.status.success(), "{}", said(&run));
+    let told = said(&run);
+    assert!(told.contains("begins again with `substructure = cells`") && told.contains("more than the 11 %"), "{told}");
+    let resolved = fs::read_to_string(out.join("resolved.track")).unwrap();
+    assert!(resolved.contains("substructure = cells"), "{resolved}");
+    assert!(!out.join("check.csv").exists());
+    let page = fs::read(out.join("sleepers.csv")).unwrap();
+
+    // the same command finds the run that began again, finished
+    let again = arguments(&["--resume"]);
+    assert!(again.status.success() && said(&again).contains("was finished before"), "{}", said(&again));
+    // the same as a run in that tier from the beginning
+    let cells = arguments(&["--set", "solve.substructure=cells", "--force"]);
+    assert!(cells.status.success(), "{}", said(&cells));
+    assert_eq!(fs::read(out.join("sleepers.csv")).unwrap(), page);
 }

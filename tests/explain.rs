@@ -239,7 +239,10 @@ fn the_page_of_a_limit_names_the_map_that_shows_it() {
     for (code, map) in MAPS {
         let (page, map) = (code.page().replace('\n', " "), format!("docs/charts/{map}"));
         assert!(page.contains(&format!("`{map}`")), "{code}: {map}");
-        assert!(page.contains("`trackbed stability FILE` draws it") || page.contains("`trackbed stability FILE` maps"), "{code}");
+        assert!(
+            page.contains("`trackbed stability FILE` draws it") || page.contains("`trackbed stability FILE` maps"),
+            "{code}"
+        );
         assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join(&map).is_file(), "{map}");
     }
 }

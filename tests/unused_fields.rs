@@ -192,7 +192,7 @@ fn shipped_scenes_state_nothing_to_no_purpose() {
 fn read_by_someone() -> BTreeSet<&'static str> {
     let compiled = compiled(JACK, &[]);
     let (scenario, graph) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
-    let readers = [check::readers(&scenario), Planner::default().readers(&scenario, None), lint::readers(&graph)];
+    let readers = [check::readers(&scenario, &[]), Planner::default().readers(&scenario, None), lint::readers(&graph)];
     let fields = readers.into_iter().flatten().flat_map(|reader| reader.reads.fields);
     check::ALWAYS_READ.iter().chain(report::DRAWN).chain(fields).copied().collect()
 }
@@ -226,4 +226,15 @@ fn the_former_name_of_the_size_of_soil_elements_is_told() {
     let told = compiled.diagnostics.iter().find(|d| d.code == Code::E0402).expect("an unknown field");
     assert!(told.message.contains("zone_size"), "{}", told.message);
     assert!(shown(&compiled).contains("soil_element"), "{}", shown(&compiled));
+}
+
+#[test]
+fn the_tolerance_of_a_study_acts_on_several_packings() {
+    let study = |repeats: &str| {
+        let vary = "vary = [solve.time_step: [0.1 ms, 0.2 ms]], report = max(settlement)";
+        told(&format!("{}\nstudy steps {{ {vary}, {repeats}tolerance = 3 % }}\n", solve("substructure = law")), &[])
+    };
+    let found = study("");
+    assert!(found.len() == 1 && found[0].contains("a point of the study has several `repeats`"), "{found:?}");
+    assert!(study("repeats = 3, ").is_empty() && study("repeats = 2 .. 5, ").is_empty());
 }

@@ -1,6 +1,6 @@
 //! The fields of a scene that the check itself reads.
 
-use crate::scenario::{Scenario, Seat};
+use crate::scenario::{Scenario, Seat, Study};
 use crate::schema::{Reader, Reads};
 
 /// Fields that act in every plan: places, parts, questions about the scene, and the seed of random values.
@@ -56,7 +56,6 @@ pub const ALWAYS_READ: &[&str] = &[
     "study.sampling",
     "study.set",
     "study.repeats",
-    "study.tolerance",
     "study.budget",
     "study.minimise",
     "study.maximise",
@@ -81,9 +80,16 @@ const LAYERS: Reads = Reads {
     acts_where: "where sleepers of a track lie on layers of known moduli",
 };
 
-/// Fields that the check reads in addition to the fields that always act.
-pub fn readers(scenario: &Scenario) -> Vec<Reader> {
+/// What ends an open range of packings, and tells designs that are equally good.
+const SEVERAL: Reads =
+    Reads { fields: &["study.tolerance"], acts_where: "where a point of the study has several `repeats`" };
+
+/// Fields that the check reads in addition to the fields that always act; `studies` are those of the file.
+pub fn readers(scenario: &Scenario, studies: &[Study]) -> Vec<Reader> {
     let on_layers = |seat: &Seat| seat.stack.is_some();
     let track = &scenario.track;
-    vec![Reader { reads: &LAYERS, acted: track.has_rails() && track.seats.iter().any(on_layers) }]
+    vec![
+        Reader { reads: &LAYERS, acted: track.has_rails() && track.seats.iter().any(on_layers) },
+        Reader { reads: &SEVERAL, acted: studies.iter().any(|study| study.repeats.are_several()) },
+    ]
 }

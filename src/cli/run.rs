@@ -5,10 +5,11 @@ use super::memory::MemoryArgument;
 use super::running::{self, Request, Running};
 use super::scene::{PassArguments, SceneArguments, SeedArgument, failed, not_yet, show};
 use super::{Outcome, report, run_elsewhere, run_packings, stored, terminal};
+use crate::compile::{Compiled, NextTier};
 use crate::diag::{Code, Diagnostic};
 use crate::results::{self, Run, Verdict};
 use crate::store::{Directory, Finished, Mode, StoreError, Unfinished};
-use crate::units::number;
+use crate::units::{number, percent};
 use std::path::{Path, PathBuf};
 
 /// Run a scene and write its results and report
@@ -64,44 +65,79 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     }
 }
 
-/// Runs in the pool of threads of the caller.
+/// Runs in the pool of threads of the caller. A law that its check refutes is followed by a run in the next tier.
 fn run_here(arguments: &Arguments) -> Outcome {
     let request = arguments.request();
     let Some(compiled) = request.compile() else { return Outcome::Usage };
-    show(&compiled);
-    if failed(&compiled) {
-        return Outcome::Failed;
+    let next = compiled.next_tier.map(|next| (next, request.in_tier(next.tier)));
+    let has_begun_again = |next: &Request| !arguments.force && is_in(next, &arguments.out);
+    if let Some((_, next)) = next.as_ref().filter(|(_, next)| has_begun_again(next)) {
+        return next
+            .compile()
+            .map_or(Outcome::Usage, |compiled| attempt(arguments, next, &compiled, arguments.mode()).0);
+    }
+    let (outcome, parted) = attempt(arguments, &request, &compiled, arguments.mode());
+    let (Some((axles, share)), Some((NextTier { tier, limit }, next))) = (parted, next) else { return outcome };
+    terminal::note(&format!(
+        "after {axles} axles law and cells part by {} of the largest settlement, more than the {} that the `tolerance` \
+         leaves: the run begins again with `substructure = {}`\n",
+        percent(share),
+        percent(limit),
+        tier.name()
+    ));
+    next.compile().map_or(Outcome::Usage, |compiled| attempt(arguments, &next, &compiled, Mode::Force).0)
+}
+
+/// Whether the directory has the work of a request, finished or not.
+fn is_in(request: &Request, out: &Path) -> bool {
+    let Some(compiled) = request.compile() else { return false };
+    let work = request.work(&compiled.sources);
+    let unfinished = Unfinished::open(out).ok().flatten().map(|state| state.work().clone());
+    let finished = || Finished::open(out).ok().flatten().map(|finished| finished.manifest().work.clone());
+    unfinished.or_else(finished).is_some_and(|found| found == work)
+}
+
+/// Runs a compiled scene. The second value tells after how many axles its check has ended it, and at which difference.
+fn attempt(arguments: &Arguments, request: &Request, compiled: &Compiled, mode: Mode) -> (Outcome, Option<(u64, f64)>) {
+    show(compiled);
+    if failed(compiled) {
+        return (Outcome::Failed, None);
     }
     let (Some(scenario), Some(graph)) = (&compiled.scenario, compiled.runnable()) else {
-        return not_yet(&compiled);
+        return (not_yet(compiled), None);
     };
-    let running = Running::new(&request, &compiled, (scenario, graph));
+    let running = Running::new(request, compiled, (scenario, graph));
+    let outcome = perform(arguments, &running, mode);
+    (outcome, running.parted.get().copied())
+}
+
+fn perform(arguments: &Arguments, running: &Running<'_>, mode: Mode) -> Outcome {
     if arguments.cluster.dry_run {
-        return dry_run(arguments, &running);
+        return dry_run(arguments, running);
     }
-    let refusal = arguments.memory.refusal(graph).filter(|_| arguments.cluster.executor == Place::Local);
+    let refusal = arguments.memory.refusal(running.graph).filter(|_| arguments.cluster.executor == Place::Local);
     if let Some(refusal) = refusal {
         return running.stop(refusal);
     }
     if let Err(error) = arguments.asked().reach() {
         return running.stop(cluster::diagnostic(&error));
     }
-    arguments.memory.watch(Some(scenario));
-    let directory = match Directory::open(&arguments.out, running.work.clone(), arguments.mode()) {
+    arguments.memory.watch(Some(running.scenario));
+    let directory = match Directory::open(&arguments.out, running.work.clone(), mode) {
         Ok(directory) => match directory.finished() {
-            Some(finished) => return again(finished, directory.path(), &running),
+            Some(finished) => return again(finished, directory.path(), running),
             None => directory,
         },
-        Err(error) => match given_to_slurm(arguments, &error, &running) {
-            Some(state) => return finished(watched(arguments, &state, &running), &running),
+        Err(error) => match given_to_slurm(arguments, &error, running) {
+            Some(state) => return finished(watched(arguments, &state, running), running),
             None => return running.stop(stored::diagnostic(&error)),
         },
     };
     let ready = match arguments.cluster.executor {
-        Place::Local => run_packings::begin(&directory, &running).map(|()| directory),
-        Place::Slurm | Place::Workers => computed_elsewhere(arguments, directory, &running),
+        Place::Local => run_packings::begin(&directory, running).map(|()| directory),
+        Place::Slurm | Place::Workers => computed_elsewhere(arguments, directory, running),
     };
-    finished(ready, &running)
+    finished(ready, running)
 }
 
 /// Computes what is left of a run, and gives the verdict on its expectations.

@@ -7,6 +7,7 @@ use super::run_progress::Shown;
 use super::scene::{PassArguments, SceneArguments, SeedArgument};
 use super::task::Packings;
 use super::{Outcome, interrupt, memory, pack, report, stored, terminal};
+use crate::check::Override;
 use crate::compile::{Compiled, fingerprint};
 use crate::diag::{Code, Diagnostic, Sources};
 use crate::execute::{self, Both, Ending, Event, Executor, Listener};
@@ -15,14 +16,14 @@ use crate::lower::Parameter;
 use crate::results::{
     self, BedTestsView, BlockRow, Label, NamedBytes, Packing, Parting, ResultsError, Run, RunRecorder, Scalar, Source,
 };
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Tier};
 use crate::store::{Beds, Directory, Work};
 use crate::units::number;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 /// What is to be run, and where.
@@ -67,6 +68,14 @@ impl Request {
         Request { scene: self.scene.with_seed(&SeedArgument::with(seed)), ..self.clone() }
     }
 
+    /// The same in another tier.
+    pub fn in_tier(&self, tier: Tier) -> Request {
+        let of_tier = Override { path: "solve.substructure".into(), value: tier.name().into() };
+        let SceneArguments { file, set } = self.scene.clone();
+        let set = set.into_iter().chain([of_tier]).collect();
+        Request { scene: SceneArguments { file, set }, ..self.clone() }
+    }
+
     /// Compiles the scene; `None` where it cannot be read, which has been said.
     pub fn compile(&self) -> Option<Compiled> {
         self.scene.compile_without(&self.passes).map(Compiled::to_run)
@@ -89,6 +98,8 @@ pub(super) struct Running<'a> {
     pub work: Work,
     /// Whether somebody wants it to stop.
     pub asked: &'static AtomicBool,
+    /// The axles after which a law and the cells that check it have parted too far to go on, and by how much.
+    pub parted: OnceLock<(u64, f64)>,
     /// The whole scene as one file, kept beside its results.
     resolved: Option<String>,
 }
@@ -100,7 +111,13 @@ impl<'a> Running<'a> {
         (scenario, graph): (&'a Scenario, &'a Graph),
     ) -> Running<'a> {
         let (work, resolved) = (request.work(&compiled.sources), request.scene.resolved_in_place());
-        Running { request, compiled, scenario, graph, work, asked: interrupt::asked(), resolved }
+        let (asked, parted) = (interrupt::asked(), OnceLock::new());
+        Running { request, compiled, scenario, graph, work, asked, parted, resolved }
+    }
+
+    /// The difference of a law and the cells that check it at which the run begins again in the next tier.
+    fn limit_of_check(&self) -> Option<f64> {
+        self.compiled.next_tier.map(|next| next.limit)
     }
 
     pub fn source(&self) -> Source<'_> {
@@ -183,8 +200,11 @@ struct Computed {
 fn execute(directory: &Directory, graph: &Graph, running: &Running<'_>) -> Result<Computed, Outcome> {
     let Running { request, compiled, scenario, asked, .. } = running;
     let refused = |error: &ResultsError| running.refuse(error);
-    let mut recorder =
-        RunRecorder::new(scenario, graph).kept_in(directory).made_by(running.source()).interrupted_by(asked);
+    let mut recorder = RunRecorder::new(scenario, graph)
+        .kept_in(directory)
+        .made_by(running.source())
+        .interrupted_by(asked)
+        .ended_by_check(running.limit_of_check());
     let from = recorder.resume().map_err(|error| refused(&error))?;
     if let Some(checkpoint) = &from {
         terminal::note(&format!("goes on after {}: what is left is told from here\n", checkpoint.clock));
@@ -197,7 +217,15 @@ fn execute(directory: &Directory, graph: &Graph, running: &Running<'_>) -> Resul
     match (ended, recorder.failure()) {
         (Ok(Ending::Finished), _) => {}
         (Ok(Ending::Stopped), Some(error)) => return Err(refused(&error)),
-        (Ok(Ending::Stopped), None) => return Err(stopped(request, recorder.has_kept())),
+        (Ok(Ending::Stopped), None) => {
+            return Err(match recorder.parted() {
+                Some(parted) => {
+                    running.parted.get_or_init(|| parted);
+                    Outcome::Failed
+                }
+                None => stopped(request, recorder.has_kept()),
+            });
+        }
         (Err(error), _) => return Err(running.stop(execute::diagnose(&error, graph, &compiled.origins))),
     }
     let timed = Timed {

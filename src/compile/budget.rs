@@ -2,19 +2,34 @@
 //! `tolerance`, or else the most accurate one that the `budget` and the `memory` allow.
 //!
 //! Without a budget `auto` never takes grains: they take hours.
+//!
+//! If it takes the law of a scene with grains, some cells of grains check the law, as far as the budget allows. Where
+//! both part by more than the tolerance leaves beside the error of cells, the run begins again in the next better tier.
 
 use super::by_law;
 use crate::diag::has_errors;
 use crate::graph::{Decision, Graph, Rejected};
 use crate::lower::Planner;
-use crate::scenario::{Given, Grains, Loading, Scenario, Tier};
-use crate::units::{duration, number};
+use crate::scenario::{Given, Grains, Loading, Origin, Scenario, Tier};
+use crate::units::{duration, number, percent};
 
 /// The scene with the tier that was taken, and the decision for its plan.
 pub struct Taken {
     pub scenario: Scenario,
     pub decision: Decision,
+    pub next: Option<NextTier>,
 }
+
+/// The tier in which a run begins again if its law and the cells that check it part too far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NextTier {
+    pub tier: Tier,
+    /// Difference / largest settlement that the tolerance leaves beside the expected error of cells.
+    pub limit: f64,
+}
+
+/// Cells of each kind that check a law.
+const CHECKS: u32 = 2;
 
 /// A tier that can run the scene.
 struct Offer {
@@ -42,7 +57,7 @@ pub fn tier(planner: &Planner, scenario: &Scenario) -> Option<Taken> {
     let fits = |offer: &&Offer| offer.seconds <= budget && grains.memory.is_none_or(|memory| offer.bytes <= *memory);
     let accurate = |offer: &&Offer| offer.error <= *grains.tolerance;
     let cheapest = |a: &&Offer, b: &&Offer| a.seconds.total_cmp(&b.seconds);
-    let (taken, why) = if let Some(offer) = offers.iter().filter(fits).filter(accurate).min_by(cheapest) {
+    let (taken, mut why) = if let Some(offer) = offers.iter().filter(fits).filter(accurate).min_by(cheapest) {
         (offer, "it is the cheapest tier with an expected error within the `tolerance`".to_owned())
     } else if let Some(offer) = offers.iter().filter(fits).min_by(|a, b| a.error.total_cmp(&b.error)) {
         (offer, format!("it has the smallest expected error within the budget of {}", duration(budget)))
@@ -52,9 +67,41 @@ pub fn tier(planner: &Planner, scenario: &Scenario) -> Option<Taken> {
     };
     let others = offers.iter().filter(|offer| offer.tier != taken.tier);
     let rejected = others.map(|offer| rejected(offer, grains, budget)).collect();
-    let what = format!("`substructure = {}`", taken.tier.name());
+    let mut what = format!("`substructure = {}`", taken.tier.name());
+    let of_tier = with(scenario, taken.tier);
+    let better = offers.iter().filter(fits).filter(|offer| offer.error < taken.error).min_by(cheapest);
+    let of_cells = offers.iter().find(|offer| offer.tier == Tier::Cells).map(|cells| cells.error);
+    let limit = of_cells.map(|error| *grains.tolerance - error).filter(|limit| *limit > 0.0);
+    let next = better.filter(|_| taken.tier == Tier::Law).zip(limit);
+    let checked = next.and_then(|next| Some((next, checked(planner, &of_tier, fits)?)));
+    let (scenario, next) = match checked {
+        Some(((better, limit), checked)) => {
+            let (cells, tier) = (*checked.solve.grains.check_cells, better.tier);
+            what += &format!(", checked by cells of grains under {cells} sleepers of each kind");
+            why += &format!(
+                "; where law and cells part by more than {} of the largest settlement, the run begins again with \
+                 `substructure = {}`",
+                percent(limit),
+                tier.name()
+            );
+            (checked, Some(NextTier { tier, limit }))
+        }
+        None => (of_tier, None),
+    };
     let decision = Decision { pass: "budget".into(), what, why, rejected };
-    Some(Taken { scenario: with(scenario, taken.tier), decision })
+    Some(Taken { scenario, decision, next })
+}
+
+/// The scene by a law with cells of grains that check it; `None` if the scene wants none or the budget allows none.
+fn checked(planner: &Planner, by_law: &Scenario, fits: impl Fn(&&Offer) -> bool) -> Option<Scenario> {
+    let mut checked = by_law.clone();
+    let cells = &mut checked.solve.grains.check_cells;
+    if cells.origin == Origin::Default {
+        *cells = Given::derived(CHECKS);
+    }
+    (**cells > 0).then_some(())?;
+    let offer = offer(planner, &checked, Tier::Law)?;
+    fits(&&offer).then_some(checked)
 }
 
 fn with(scenario: &Scenario, tier: Tier) -> Scenario {

@@ -31,12 +31,12 @@ static SETTLED: Memo<Graph, Option<Vec<f64>>> = Memo::new(4);
 /// [`MOST`] blocks; `None` for any other scene, and if the law cannot run in [`LONGEST`].
 pub fn settlement(planner: &Planner, scenario: &Scenario) -> Option<Vec<f64>> {
     let grains = &scenario.solve.grains;
-    if !matches!(*grains.tier, Tier::Cells | Tier::Zone) && grains.check_cells == 0 {
+    if !matches!(*grains.tier, Tier::Cells | Tier::Zone) && *grains.check_cells == 0 {
         return None;
     }
     let mut by_law = scenario.clone();
     by_law.solve.grains.tier = Given { value: Tier::Law, origin: grains.tier.origin };
-    by_law.solve.grains.check_cells = 0;
+    by_law.solve.grains.check_cells.value = 0;
     by_law.solve.update = Update::Geometric { first: FIRST, ratio: RATIO };
     let elements = &mut by_law.solve.elements_per_bay;
     elements.value = elements.value.min(ELEMENTS);

@@ -4,6 +4,8 @@ mod budget;
 mod by_law;
 mod unused;
 
+pub use budget::NextTier;
+
 use crate::check::{self, Modules, Override};
 use crate::diag::{self, Code, Diagnostic, Severity, Sources};
 use crate::execute::{at_rest, diagnose};
@@ -25,6 +27,8 @@ pub struct Compiled {
     pub graph: Option<Graph>,
     /// Places in the scene of the parameters of the graph.
     pub origins: Origins,
+    /// What follows if the cells that check a law part from it: `substructure = auto` with a `budget`.
+    pub next_tier: Option<NextTier>,
     /// The studies of the file that have no mistake of their own.
     pub studies: Vec<Study>,
 }
@@ -38,6 +42,7 @@ impl Compiled {
             scenario: None,
             graph: None,
             origins: Origins::default(),
+            next_tier: None,
             studies: Vec::new(),
         }
     }
@@ -79,6 +84,7 @@ pub fn compile_with(
     // a scene with a mistake has no plan, and a choice takes as long as several plans
     let taken =
         checked.scenario.as_ref().filter(|_| checked.sound).and_then(|scenario| budget::tier(planner, scenario));
+    let next_tier = taken.as_ref().and_then(|taken| taken.next);
     let (within, chosen) = taken.map(|taken| (taken.scenario, taken.decision)).unzip();
     checked.scenario = within.or(checked.scenario);
     if let Some(scenario) = &checked.scenario {
@@ -99,7 +105,8 @@ pub fn compile_with(
         let failure = runs.filter_map(|graph| Some(diagnose(&at_rest(graph).err()?, graph, &origins))).next();
         diagnostics.extend(failure);
         if checked.sound {
-            let of_plan = |graph| [check::readers(scenario), lowered.readers, lint::readers(graph)].concat();
+            let of_plan =
+                |graph| [check::readers(scenario, &checked.studies), lowered.readers, lint::readers(graph)].concat();
             // a plan that this version cannot run does not show the effect of a line
             let runs = graph.as_ref().filter(|graph| graph.runs);
             let mut readers = runs.map(of_plan).unwrap_or_default();
@@ -115,6 +122,7 @@ pub fn compile_with(
         scenario: checked.scenario.filter(|_| checked.sound),
         graph,
         origins,
+        next_tier,
         studies: checked.studies,
     }
 }

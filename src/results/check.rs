@@ -44,6 +44,15 @@ pub(super) fn check_rows(
     seats.iter().zip(settled).zip(cells).map(row).collect()
 }
 
+/// How far the rows of a block part beyond the error of the cells, as a share of their largest settlement, if this is
+/// above a limit.
+pub(super) fn parted_by(rows: &[CheckRow], limit: f64) -> Option<f64> {
+    let largest = rows.iter().map(|row| row.cell_m.abs()).fold(0.0, f64::max);
+    let beyond = |row: &CheckRow| (row.law_m - row.cell_m).abs() - row.cell_error_m;
+    let share = rows.iter().map(beyond).fold(0.0, f64::max) / largest;
+    (largest > 0.0 && share > limit).then_some(share)
+}
+
 /// How far a law and the cells that check it part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parting<'a> {

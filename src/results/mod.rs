@@ -45,7 +45,7 @@ pub use bed_tests::{
     read_tests, test_files, tests_file,
 };
 pub use check::{CheckRow, Parting};
-use check::{check_rows, summarise_check};
+use check::{check_rows, parted_by, summarise_check};
 pub use compared::compared_passage;
 use compared::summarise_compared;
 pub use confidence::{

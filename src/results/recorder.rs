@@ -6,7 +6,7 @@ use super::under_track::Part;
 use super::{
     BedSummary, BedTest, BedTests, BlockRow, CheckRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Run,
     Scalar, SleeperRow, SleeperTable, SoFar, Source, Tables, TampingRow, TrainRow, bed_summary, check_rows, histories,
-    static_wheel_load, summarise, test_loads,
+    parted_by, static_wheel_load, summarise, test_loads,
 };
 use crate::execute::{Between, BlockMeasures, Checkpoint, Comparison, Event, Listener};
 use crate::graph::{Block, Blocks, Graph, Record, Runner, SupportNode, TrackNode};
@@ -108,6 +108,11 @@ pub struct RunRecorder<'a> {
     /// Chainages between which every wheel of a train passes, m, for each kind of train.
     passed: Vec<Range<f64>>,
     directory: Option<&'a Directory>,
+    /// The largest difference of a law and the cells that check it, as a share of the largest settlement, beyond which
+    /// the run ends.
+    limit_of_check: Option<f64>,
+    /// The block after which the run has ended for this reason, and the difference.
+    parted: Option<(u64, f64)>,
     /// Becomes true when the run must store its state and stop.
     interrupted: Option<&'a AtomicBool>,
     /// When a checkpoint is due.
@@ -152,6 +157,8 @@ impl<'a> RunRecorder<'a> {
             supports: &graph.supports,
             passed: graph.blocks().map(Blocks::passed_by_kind).unwrap_or_default(),
             directory: None,
+            limit_of_check: None,
+            parted: None,
             interrupted: None,
             due: None,
             tables: RunTables { tests, ..RunTables::default() },
@@ -174,6 +181,17 @@ impl<'a> RunRecorder<'a> {
     /// The same, that keeps the state and ends the run soon after `asked` has become true.
     pub fn interrupted_by(self, asked: &'a AtomicBool) -> Self {
         RunRecorder { interrupted: Some(asked), ..self }
+    }
+
+    /// The same, that ends the run where its law and the cells that check it part by more than this share of the largest
+    /// settlement.
+    pub fn ended_by_check(self, limit: Option<f64>) -> Self {
+        RunRecorder { limit_of_check: limit, ..self }
+    }
+
+    /// The axles after which law and grains have parted, and by how much, where this has ended the run.
+    pub fn parted(&self) -> Option<(u64, f64)> {
+        self.parted
     }
 
     /// The same, and it stores the results so far of a run of these texts beside its checkpoints.
@@ -236,6 +254,11 @@ impl<'a> RunRecorder<'a> {
         let repeats = self.scenario.solve.grains.repeats;
         let tests = self.tables.tests.as_ref().filter(|_| repeats.are_open());
         tests.is_some_and(|tests| tests.are_enough(&self.scenario.solve.grains))
+    }
+
+    /// Whether so many axles are enough to tell a law from grains: a tenth of all.
+    fn is_to_be_checked(&self, axles: u64) -> bool {
+        self.graph.blocks().is_some_and(|blocks| 10 * axles >= blocks.total)
     }
 
     fn is_interrupted(&self) -> bool {
@@ -457,7 +480,13 @@ impl Listener for RunRecorder<'_> {
             Event::Laws { axles, settlement } => self.laws(*axles, settlement),
             Event::Compared(compared) => self.tables.compared = Some(**compared),
             Event::Checked { axles, seats, settled, cells } => {
-                self.tables.check.extend(check_rows(self.track(), *axles, seats, (settled, cells)));
+                let rows = check_rows(self.track(), *axles, seats, (settled, cells));
+                let limit = self.limit_of_check.filter(|_| self.is_to_be_checked(*axles));
+                self.parted = limit.and_then(|limit| parted_by(&rows, limit)).map(|share| (*axles, share));
+                self.tables.check.extend(rows);
+                if self.parted.is_some() {
+                    return ControlFlow::Break(());
+                }
             }
             Event::Packed { bed, found } => {
                 self.bed = Some(bed_summary(&self.scenario.title, bed, &found.packed, None));

@@ -85,7 +85,7 @@ pub struct Grains {
     /// Number of bays in a periodic cell of grains: 1, 2 or 3.
     pub cell_bays: u32,
     /// Number of sleepers of each kind that cells of grains check while a law runs.
-    pub check_cells: u32,
+    pub check_cells: Given<u32>,
     /// Time step, s; `None` if the planner chooses it.
     pub step: Option<Given>,
     /// Size of the soil elements, m; `None` if the planner chooses it.
@@ -112,7 +112,7 @@ impl Default for Grains {
             support_from_passage: false,
             sleepers_pitch: false,
             cell_bays: 1,
-            check_cells: 0,
+            check_cells: Given { value: 0, origin: Origin::Default },
             step: None,
             soil_element: None,
             tolerance: Given { value: 0.05, origin: Origin::Default },

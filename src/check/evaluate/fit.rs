@@ -126,7 +126,10 @@ impl Evaluator<'_> {
             return Some(error);
         }
         let names: Vec<&str> = words.iter().filter(|w| !w.planned).map(|w| w.name).collect();
-        let Some(target) = self.resolve(path, scope, &names) else { return Some(error) };
+        let Some(target) = self.resolve(path, scope, &names) else {
+            self.say_what_helps(path.names[0].span, || format!("expected {}", form.describe()));
+            return Some(error);
+        };
         if target.is_let {
             let tree = self.scopes[target.id.scope].tree.clone();
             let Item::Let(binding) = &tree.items[target.id.item] else { return Some(error) };
@@ -250,6 +253,14 @@ impl Evaluator<'_> {
             self.findings.diagnostics.last_mut().filter(|d| d.labels.len() == 1 && d.labels[0].span == place)
         {
             last.labels.push(Label { span, text: text.into() });
+        }
+    }
+
+    /// Adds a help to the last diagnostic, if it is about this place and has none.
+    fn say_what_helps(&mut self, place: Span, help: impl FnOnce() -> String) {
+        let last = self.findings.diagnostics.last_mut();
+        if let Some(last) = last.filter(|d| d.help.is_none() && d.labels.first().is_some_and(|l| l.span == place)) {
+            last.help = Some(help());
         }
     }
 

@@ -115,7 +115,10 @@ pub fn grains(record: &Record, places: Option<&Places>, findings: &mut Findings)
         support_from_passage: record.word("support_from")? == "passage",
         sleepers_pitch: record.word("sleeper_pitch")? == "free",
         cell_bays: record.number("cell_bays")?.value as u32,
-        check_cells: record.number("check_cells")?.value as u32,
+        check_cells: Given {
+            value: record.number("check_cells")?.value as u32,
+            origin: record.get("check_cells")?.origin,
+        },
         step: optional("grain_step")?,
         soil_element: optional("soil_element")?,
         tolerance: given(record, "tolerance")?,

@@ -8,6 +8,7 @@ use crate::diag::{Diagnostic, Severity};
 use crate::graph::{BedPlan, CellPlan, CellsNode, Cost, Model, Node};
 use crate::lower::Draft;
 use crate::lower::bed::{self, BedUse, beds};
+use crate::scenario::Scenario;
 use crate::schema::Reads;
 
 /// Fields that act only where cells check a law.
@@ -24,12 +25,12 @@ pub(super) struct Check {
 pub(super) fn check(draft: &Draft<'_>, blocks: u64) -> Check {
     let scenario = draft.scenario;
     let nothing = |refusals| Check { node: None, cost: None, refusals };
-    let (count, Some(plan)) = (scenario.solve.grains.check_cells, &draft.blocks) else { return nothing(Vec::new()) };
+    let (count, Some(plan)) = (*scenario.solve.grains.check_cells, &draft.blocks) else { return nothing(Vec::new()) };
     if count == 0 {
         return nothing(Vec::new());
     }
     let beds = match beds(scenario, BedUse::Track) {
-        Ok(beds) if beds.is_empty() => return nothing(vec![no_grains()]),
+        Ok(beds) if beds.is_empty() => return nothing(vec![no_grains(scenario)]),
         Ok(beds) => beds,
         Err(refusals) => return nothing(refusals.into_iter().map(|it| it.severity(Severity::Warning)).collect()),
     };
@@ -54,9 +55,13 @@ pub(super) fn told(node: &Node) -> String {
     format!(", checked by cells of grains under {count} sleeper{}", if count == 1 { "" } else { "s" })
 }
 
-fn no_grains() -> Diagnostic {
+fn no_grains(scenario: &Scenario) -> Diagnostic {
     let message = "`check_cells` asks for cells of grains, and no section has a layer of grains".to_owned();
-    waits(message, None, "leave out `check_cells`, or give a trackform `layers` of a `granular`")
+    waits(
+        message,
+        scenario.solve.grains.check_cells.origin.span(),
+        "leave out `check_cells`, or give a trackform `layers` of a `granular`",
+    )
 }
 
 /// A cell for each of `count` sleepers of every kind.

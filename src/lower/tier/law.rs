@@ -46,7 +46,7 @@ impl Tier for SettlementLaws {
     }
 
     fn also_reads(&self, scenario: &Scenario) -> &'static [&'static Reads] {
-        if scenario.solve.grains.check_cells > 0 { &check::READS } else { &[] }
+        if *scenario.solve.grains.check_cells > 0 { &check::READS } else { &[] }
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
