@@ -135,7 +135,23 @@ fn a_chart_of_grains_is_planned_within_its_time() {
     let (whole, told) = dry("600");
     assert!(told.contains("20 axles instead of 40") && !told.contains("grains from"), "{told}");
     let line = |name: &str| whole.lines().find(|line| line.trim_start().starts_with(&format!("{name} ")));
-    for name in ["full_monolithic", "scene", "law", "cells", "every_4", "alone", "cells_of_3", "packing_3"] {
+    for name in [
+        "full_monolithic",
+        "scene",
+        "law",
+        "cells",
+        "every_4",
+        "alone",
+        "cells_of_3",
+        "packing_3",
+        "grain_step_10_us",
+        "grain_step_30_us",
+        "half_the_dashpots",
+        "dashpots_in_shear",
+        "larger_grains",
+        "other_shape",
+        "cells_at_1_percent",
+    ] {
         let line = line(name).unwrap_or_else(|| panic!("no {name}: {whole}"));
         assert!(!line.contains("left out") && !line.contains("refused"), "{line}");
     }

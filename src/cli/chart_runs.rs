@@ -17,6 +17,7 @@ use crate::trials::runs::{
 };
 use crate::units::{duration, percent};
 use std::path::Path;
+use std::time::Instant;
 
 /// What a chart of runs is asked for.
 pub(super) struct Asked<'a> {
@@ -188,8 +189,11 @@ fn computed(
         let result = match planned {
             Err(reason) => Err(Ended::Refused { reason }),
             Ok(_) if !chosen => Err(Ended::LeftOut),
-            Ok(planned) => run_one(asked, subject, &planned)?
-                .ok_or_else(|| Ended::Refused { reason: "its run has failed".to_owned() }),
+            Ok(planned) => {
+                let began = Instant::now();
+                let ran = run_one(asked, subject, &planned)?;
+                ran.ok_or_else(|| Ended::Stopped { seconds: began.elapsed().as_secs_f64() })
+            }
         };
         ran.push((variant, estimated, result));
     }
@@ -294,6 +298,7 @@ fn cells(row: &RunRow) -> Vec<String> {
         Ended::LeftOut => {
             vec![name, format!("left out: about {}", row.estimated_s.map_or("?".to_owned(), duration))]
         }
+        Ended::Stopped { seconds } => vec![name, format!("stopped by a solver after {}", duration(*seconds))],
         Ended::Refused { reason } => vec![name, format!("refused: {reason}")],
     };
     cells.resize(3 + RunErrors::ALL.len(), String::new());

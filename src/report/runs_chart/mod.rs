@@ -90,6 +90,7 @@ fn cells(run: &RunRow) -> Vec<String> {
             cells.extend(RunErrors::ALL.map(|(_, _, read)| read(&done.errors).map_or("-".to_owned(), percent)));
         }
         Ended::LeftOut => cells.push("left out".to_owned()),
+        Ended::Stopped { seconds } => cells.extend([duration(*seconds), "stopped by a solver".to_owned()]),
         Ended::Refused { .. } => cells.push("refused".to_owned()),
     }
     cells.resize(3 + RunErrors::ALL.len(), "-".to_owned());

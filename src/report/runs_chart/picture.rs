@@ -1,7 +1,7 @@
 //! Error of whole runs against their time: one panel for each quantity, both scales logarithmic.
 
 use crate::report::svg::{Anchor, Frame, Svg, text_width};
-use crate::trials::runs::{Done, Group, RunChart, RunErrors, RunRow};
+use crate::trials::runs::{Done, Ended, Group, RunChart, RunErrors, RunRow};
 use crate::units::{duration, percent};
 
 const WIDTH: f64 = 1080.0;
@@ -128,6 +128,20 @@ fn panel(svg: &mut Svg, chart: &RunChart, (index, name, read): (usize, &str, Rea
         marker(svg, row.variant.group, at, &title);
         label(svg, &row.variant.name, at, inner, &mut taken);
     }
+    for row in chart.rows.iter().filter(|row| matches!(row.ended, Ended::Stopped { .. })) {
+        stopped(svg, row, &plane, &mut taken);
+    }
+}
+
+/// A run that a solver has stopped, at the upper edge.
+fn stopped(svg: &mut Svg, row: &RunRow, plane: &Plane, taken: &mut Vec<Frame>) {
+    let Some(seconds) = row.seconds() else { return };
+    let inner = plane.frame;
+    let (x, y) = (plane.point(seconds, 1.0).0, inner.y + 4.0);
+    let (title, size) = (format!("{}: stopped by a solver after {}", row.variant.name, duration(seconds)), 4.0);
+    svg.path("cross k2", &[(x - size, y - size), (x + size, y + size)], false, &title);
+    svg.path("cross k2", &[(x - size, y + size), (x + size, y - size)], false, &title);
+    label(svg, &format!("{} (stopped)", row.variant.name), (x, y), inner, taken);
 }
 
 /// The runs that no faster run beats.
@@ -184,6 +198,10 @@ fn marker(svg: &mut Svg, group: Group, (x, y): (f64, f64), title: &str) {
         Group::Passages => svg.path("dot s2", &polygon(&[(0.0, -4.6), (4.2, 3.4), (-4.2, 3.4)]), true, title),
         Group::Bays => svg.path("dot s3", &polygon(&[(0.0, -4.8), (4.8, 0.0), (0.0, 4.8), (-4.8, 0.0)]), true, title),
         Group::Soil => svg.path("dot k4", &polygon(&[(0.0, 4.6), (4.2, -3.4), (-4.2, -3.4)]), true, title),
+        Group::Grains => svg.circle("dot s3", (x, y), 3.6, title),
+        Group::Jumps => {
+            svg.path("dot s2", &polygon(&[(-1.8, -4.6), (1.8, -4.6), (1.8, 4.6), (-1.8, 4.6)]), true, title)
+        }
         Group::Passage => {
             svg.path("dot k1", &polygon(&[(-4.6, -1.8), (4.6, -1.8), (4.6, 1.8), (-4.6, 1.8)]), true, title);
         }

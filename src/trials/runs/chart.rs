@@ -32,7 +32,11 @@ pub enum Ended {
     Done(Done),
     /// It was not run: it is expected to take too long.
     LeftOut,
-    /// It does not apply to the scene, or a check or a solver has refused it.
+    /// A solver has stopped it after so many seconds, such as for a step that is not stable.
+    Stopped {
+        seconds: f64,
+    },
+    /// It does not apply to the scene, or a check has refused it.
     Refused {
         reason: String,
     },
@@ -49,6 +53,15 @@ pub struct RunRow {
 }
 
 impl RunRow {
+    /// Seconds until its end, or until a solver stopped it.
+    pub fn seconds(&self) -> Option<f64> {
+        match &self.ended {
+            Ended::Done(done) => Some(done.took.seconds),
+            Ended::Stopped { seconds } => Some(*seconds),
+            Ended::LeftOut | Ended::Refused { .. } => None,
+        }
+    }
+
     pub fn done(&self) -> Option<&Done> {
         if let Ended::Done(done) = &self.ended { Some(done) } else { None }
     }

@@ -13,15 +13,12 @@ pub fn runs_csv(chart: &RunChart) -> String {
         let (outcome, reason) = match &row.ended {
             Ended::Done(_) => ("done", ""),
             Ended::LeftOut => ("left_out", ""),
+            Ended::Stopped { .. } => ("stopped", "a solver has stopped it"),
             Ended::Refused { reason } => ("refused", reason.as_str()),
         };
         let short = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.6}"));
         let done = row.done();
-        let numbers = [
-            short(row.estimated_s),
-            short(done.map(|done| done.took.seconds)),
-            short(done.map(|done| done.took.build_s)),
-        ];
+        let numbers = [short(row.estimated_s), short(row.seconds()), short(done.map(|done| done.took.build_s))];
         let errors = RunErrors::ALL.map(|(_, _, read)| short(done.and_then(|done| read(&done.errors))));
         let efficient = done.map_or("", |done| if done.efficient { "yes" } else { "no" });
         let fields = [

@@ -2,8 +2,11 @@
 
 use crate::check::Override;
 use crate::graph::Update;
-use crate::scenario::{Scenario, Tier, TimeStep};
+use crate::scenario::{Granular, Scenario, Shape, Tier, TimeStep};
 use serde::Serialize;
+
+/// Size of larger grains / size of the grains of the scene.
+const LARGER: f64 = 1.25;
 
 /// What a variant changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -21,6 +24,10 @@ pub enum Group {
     /// Bays of grains: in the window or in a cell.
     Bays,
     Soil,
+    /// Step, dashpots, size and shape of the grains.
+    Grains,
+    /// Trains that cells leave out.
+    Jumps,
     /// Mesh of the rail and time step of a passage.
     Passage,
     /// Another packing of the same bed.
@@ -28,7 +35,7 @@ pub enum Group {
 }
 
 impl Group {
-    pub const ALL: [Group; 9] = [
+    pub const ALL: [Group; 11] = [
         Group::Reference,
         Group::Scene,
         Group::Tier,
@@ -36,6 +43,8 @@ impl Group {
         Group::Passages,
         Group::Bays,
         Group::Soil,
+        Group::Grains,
+        Group::Jumps,
         Group::Passage,
         Group::Packing,
     ];
@@ -49,6 +58,8 @@ impl Group {
             Group::Passages => "passages",
             Group::Bays => "bays",
             Group::Soil => "soil",
+            Group::Grains => "grains",
+            Group::Jumps => "jumps",
             Group::Passage => "passage",
             Group::Packing => "packing",
         }
@@ -131,12 +142,49 @@ fn on_grains(scenario: &Scenario, packings: u64) -> Vec<RunVariant> {
         cells("3"),
         RunVariant::new(Group::Soil, "soil_200_mm", &[("solve.soil_element", "200 mm")]),
     ]);
+    all.extend(["10 us", "30 us"].map(|step| {
+        let name = format!("grain_step_{}", step.replace(' ', "_"));
+        RunVariant::new(Group::Grains, &name, &[("solve.grain_step", step)])
+    }));
+    all.extend(of_materials(scenario));
+    all.extend(["1 %", "20 %"].map(|tolerance| {
+        let name = format!("cells_at_{}_percent", tolerance.trim_end_matches(" %"));
+        RunVariant::new(Group::Jumps, &name, &[("solve.substructure", "cells"), ("solve.tolerance", tolerance)])
+    }));
     let seed = scenario.solve.seed;
     all.extend((1..packings).map(|more| {
         let seed = (seed + more).to_string();
         RunVariant::new(Group::Packing, &format!("packing_{seed}"), &[("solve.seed", seed.as_str())])
     }));
     all
+}
+
+/// Dashpots, size and shape of the grains that the file of the scene declares.
+fn of_materials(scenario: &Scenario) -> Vec<RunVariant> {
+    let layers = scenario.track.sections.iter().flat_map(|section| &section.layers);
+    let mut grains: Vec<(&str, &Granular)> =
+        layers.filter_map(|layer| Some((layer.name.as_str(), layer.granular()?))).collect();
+    // entries of the library have a point in their name, and belong to other scenes too
+    grains.retain(|(name, _)| !name.contains('.'));
+    grains.sort_by_key(|(name, _)| *name);
+    grains.dedup_by_key(|(name, _)| *name);
+    if grains.is_empty() {
+        return Vec::new();
+    }
+    let each = |name: &str, field: &str, value: &dyn Fn(&Granular) -> String| {
+        let of = |(material, grains): &(&str, &Granular)| edit(&format!("{material}.{field}"), &value(grains));
+        RunVariant { name: name.to_owned(), group: Group::Grains, edits: grains.iter().map(of).collect() }
+    };
+    let other_shape = |grains: &Granular| match grains.shape {
+        Shape::Spheres => "clumps(2 .. 3)".to_owned(),
+        Shape::Clumps { .. } => "spheres".to_owned(),
+    };
+    vec![
+        each("half_the_dashpots", "viscous_damping", &|grains| (0.5 * *grains.viscous_damping).to_string()),
+        each("dashpots_in_shear", "shear_damping", &|grains| grains.viscous_damping.to_string()),
+        each("larger_grains", "scale", &|grains| (LARGER * *grains.scale).to_string()),
+        each("other_shape", "shape", &other_shape),
+    ]
 }
 
 fn by_law(scenario: &Scenario) -> Vec<RunVariant> {
