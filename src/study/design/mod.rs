@@ -2,16 +2,15 @@
 //! direction is then converted to the values of its axis. A seed gives the same design on every machine.
 
 mod latin;
-mod normal;
 mod random;
 mod sobol;
 
 pub use latin::latin_hypercube;
-pub use normal::inverse_normal;
 pub use sobol::{SOBOL_DIMENSIONS, sobol};
 
 use crate::scenario::{Axis, Sampling, Spread, Study, Values};
 use crate::units::number;
+use statrs::distribution::{ContinuousCDF, Normal};
 
 /// A value at a point of a study.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +21,11 @@ pub struct Level {
     pub number: Option<f64>,
     /// Index into the list of the axis.
     pub choice: Option<usize>,
+}
+
+/// The quantile of the standard normal distribution for probability `p`, 0 < p < 1.
+pub fn inverse_normal(p: f64) -> f64 {
+    Normal::standard().inverse_cdf(p)
 }
 
 /// Every point of a study: a value for each axis.
@@ -104,6 +108,18 @@ mod tests {
         };
         let double: f64 = points.iter().map(|p| points.iter().map(|q| pair(p, q)).sum::<f64>()).sum();
         (13.0_f64 / 12.0).powi(d) - 2.0 / n * single + double / (n * n)
+    }
+
+    #[test]
+    fn quantiles_are_those_of_the_tables() {
+        for (p, x) in [
+            (0.5, 0.0),
+            (0.6, 0.253_347_103_135_799_7),
+            (0.975, 1.959_963_984_540_054),
+            (1e-10, -6.361_340_902_404_056),
+        ] {
+            assert!((inverse_normal(p) - x).abs() <= 1e-12, "{p}: {} against {x}", inverse_normal(p));
+        }
     }
 
     #[test]
