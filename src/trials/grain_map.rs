@@ -202,12 +202,7 @@ fn speeds(built: &Specimen, train: &TrainForces, tried: &Tried<'_>) -> Result<Ve
         let faster = TrainForces { interval: train.interval / factor, sleepers: train.sleepers.clone() };
         let passed = specimen.clone().pass(&faster)?;
         go_on(tried)?;
-        Ok(SpeedTrial {
-            allowed: *allowed,
-            factor: *factor,
-            stiffness: passed.stiffness.unwrap_or(f64::NAN),
-            settled: passed.added,
-        })
+        Ok(SpeedTrial { allowed: *allowed, factor: *factor, stiffness: passed.stiffness, settled: passed.added })
     })
 }
 

@@ -52,7 +52,7 @@ impl Book {
     /// Notes a train that was computed.
     pub fn note(&mut self, passed: &Passed) {
         let age = 1 + self.computed.iter().map(Vec::len).sum::<usize>();
-        self.stiffness = passed.stiffness.unwrap_or(self.stiffness);
+        self.stiffness = passed.stiffness;
         if let Some(run) = self.computed.last_mut() {
             run.push(Computed { age: age as f64, added: passed.added });
         }

@@ -19,8 +19,8 @@ const OF_SLEEPER: f64 = 0.2;
 /// Steps between looks at inertia, and at how deep the sleepers are, s.
 const HOLD: u64 = 200;
 const LOOK: f64 = 0.5e-3;
-/// Time before a train in which the force goes to its value between two trains and stays there; over the last part of
-/// this time the level of a sleeper is read, s.
+/// Time in which the force goes from the weight of the sleeper to its value between two trains, and back after the
+/// train; time for which it then stays there; over the last part of this time the level of the sleeper is read, s.
 const LEAD: f64 = 0.02;
 const STAND: f64 = 0.02;
 const READ: f64 = 0.005;
@@ -48,6 +48,10 @@ pub(super) struct Cell {
     /// The sleeper whose answers are taken, and the height of the bed under it as built, m.
     pub middle: usize,
     pub height: f64,
+    /// Secant stiffness of the grains under it, N/m, and the level at which a spring of this stiffness carries nothing
+    /// if it carries the weight of the sleeper where the sleeper is, m.
+    pub stiffness: f64,
+    pub unloaded: f64,
 }
 
 /// Effect of a train on the sleeper in the middle.
@@ -55,8 +59,8 @@ pub(super) struct Cell {
 pub struct Passed {
     /// m.
     pub added: f64,
-    /// Secant of its largest force, N/m; `None` if the train hardly loads the cell.
-    pub stiffness: Option<f64>,
+    /// Secant of its largest force, N/m; the one before if the train hardly loads the cell.
+    pub stiffness: f64,
 }
 
 impl Cell {
@@ -80,7 +84,8 @@ impl Cell {
         let weights: Vec<f64> = sleepers.iter().map(|sleeper| node.gravity * sleeper.mass).collect();
         let height = bed.wall(walls[plan.middle]).pose(bed.domain()).position.z - 0.5 * sleepers[plan.middle].size[2];
         let forces = weights.clone();
-        let mut cell = Cell { bed, walls, stride, forces, weights, middle: plan.middle, height };
+        let (middle, stiffness, unloaded) = (plan.middle, f64::INFINITY, 0.0);
+        let mut cell = Cell { bed, walls, stride, forces, weights, middle, height, stiffness, unloaded };
         cell.drive(&cell.constant(&cell.forces), node.gravity);
         Ok(cell)
     }
@@ -103,32 +108,43 @@ impl Cell {
         Ok(())
     }
 
-    /// Lets one train pass.
+    /// Takes a stiffness of the grains, N/m, for a sleeper at rest that no train has passed.
+    pub fn stand_on(&mut self, stiffness: f64) {
+        self.stiffness = stiffness;
+        self.unloaded = self.level() - self.weights[self.middle] / stiffness;
+    }
+
+    /// Lets one train pass; the sleepers rest before and after it with their weights.
+    ///
+    /// The settlement is read at rest, as that of a whole bed. Between two trains the rail lifts the sleepers, and a bed
+    /// without load rises by tenths of a millimetre.
     pub fn pass(&mut self, train: &TrainForces, gravity: f64) -> Result<Passed, NodeError> {
         let between: Vec<f64> = train.sleepers.iter().map(|forces| forces[0]).collect();
-        self.go_to(&between, [LEAD, STAND - READ], gravity)?;
-        let before = self.mean_level(READ)?;
-        let start = self.bed.time();
+        self.go_to(&between, [LEAD, 0.0], gravity)?;
+        let (begin, start) = (self.level(), self.bed.time());
         let table = |forces: &Vec<f64>| {
             // a train ends as the next one begins
             let forces: Vec<f64> = forces.iter().chain(&forces[..1]).copied().collect();
             (forces.iter().enumerate().map(|(at, _)| start + train.interval * at as f64).collect(), forces)
         };
         self.drive(&train.sleepers.iter().map(table).collect::<Vec<_>>(), gravity);
-        let mut deepest = before;
+        let mut deepest = begin;
         self.run(train.time(), |cell| deepest = deepest.max(cell.level()))?;
         self.forces = between;
-        self.drive(&self.constant(&self.forces), gravity);
-        self.run(STAND - READ, |_| ())?;
-        let after = self.mean_level(READ)?;
-        if after > SUNK * self.height {
-            let why = format!("a sleeper has sunk by {:.0} mm: the grains do not carry it", 1e3 * after);
+        self.go_to(&self.weights.clone(), [LEAD, STAND - READ], gravity)?;
+        let rest = self.mean_level(READ)?;
+        if rest > SUNK * self.height {
+            let why = format!("a sleeper has sunk by {:.0} mm: the grains do not carry it", 1e3 * rest);
             return Err(NodeError::Other { node: "cells".into(), why });
         }
         let load = train.load(self.middle);
-        let secant = load / (deepest - before);
-        let stiffness = (load > LOADED && secant.is_finite() && secant > 0.0).then_some(secant);
-        Ok(Passed { added: after - before, stiffness })
+        let secant = load / (deepest - begin);
+        if load > LOADED && secant.is_finite() && secant > 0.0 {
+            self.stiffness = secant;
+        }
+        let unloaded = rest - self.weights[self.middle] / self.stiffness;
+        let added = unloaded - std::mem::replace(&mut self.unloaded, unloaded);
+        Ok(Passed { added, stiffness: self.stiffness })
     }
 
     /// Level of the sleeper in the middle below that at which it was set down, m.

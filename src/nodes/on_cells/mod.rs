@@ -30,7 +30,7 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 /// Version: increased when the same cells are built in another way, or stored in another form.
-const METHOD: &str = "cell of grains 2";
+const METHOD: &str = "cell of grains 3";
 
 /// Data of cells.
 #[derive(Clone, Copy)]
@@ -332,13 +332,15 @@ fn recipe(parts: Parts<'_>, plan: &CellPlan) -> String {
 fn built(parts: Parts<'_>, plan: &CellPlan, tell: &mut Telling<'_>) -> Result<(Cell, Book), NodeError> {
     let (node, hash) = (parts.cells, recipe(parts, plan));
     let build = || {
-        let cell = Cell::build(plan, node, parts.beds, tell)?;
+        let mut cell = Cell::build(plan, node, parts.beds, tell)?;
         going_on(tell(Stage::StaticLoad, 0.0))?;
-        Ok((cell.store(), cell.pressed(node.gravity)?))
+        cell.stand_on(cell.clone().pressed(node.gravity)?);
+        Ok(cell.store())
     };
     // later results must not depend on whether the cell was built before: both cases continue from the stored state
-    let (stored, stiffness) = parts.beds.built::<_, NodeError>(&hash, build)?;
-    Ok((Cell::restore(stored, plan.sleepers.len())?, Book::new(stiffness)))
+    let cell = Cell::restore(parts.beds.built::<_, NodeError>(&hash, build)?, plan.sleepers.len())?;
+    let book = Book::new(cell.stiffness);
+    Ok((cell, book))
 }
 
 fn no_forces() -> NodeError {

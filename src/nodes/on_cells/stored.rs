@@ -30,24 +30,34 @@ pub(super) struct StoredCell {
     weights: Vec<f64>,
     middle: usize,
     height: f64,
+    stiffness: f64,
+    unloaded: f64,
 }
 
 impl Cell {
     pub fn store(&self) -> StoredCell {
-        let Cell { bed, walls, stride, forces, weights, middle, height } = self;
-        let (walls, forces, weights) = (walls.clone(), forces.clone(), weights.clone());
-        StoredCell { bed: bed.checkpoint(), walls, stride: *stride, forces, weights, middle: *middle, height: *height }
+        StoredCell {
+            bed: self.bed.checkpoint(),
+            walls: self.walls.clone(),
+            stride: self.stride,
+            forces: self.forces.clone(),
+            weights: self.weights.clone(),
+            middle: self.middle,
+            height: self.height,
+            stiffness: self.stiffness,
+            unloaded: self.unloaded,
+        }
     }
 
     /// The cell that was stored; it must have so many sleepers.
     pub fn restore(stored: StoredCell, sleepers: usize) -> Result<Cell, NodeError> {
-        let StoredCell { bed, walls, stride, forces, weights, middle, height } = stored;
+        let StoredCell { bed, walls, stride, forces, weights, middle, height, stiffness, unloaded } = stored;
         let bed = Bed::restore(bed).map_err(foreign)?;
         let is_whole = [walls.len(), forces.len(), weights.len()] == [sleepers; 3] && middle < sleepers;
         if !is_whole || walls.iter().any(|wall| wall.0 as usize >= bed.walls().len()) {
             return Err(foreign("one cell has other sleepers"));
         }
-        Ok(Cell { bed, walls, stride, forces, weights, middle, height })
+        Ok(Cell { bed, walls, stride, forces, weights, middle, height, stiffness, unloaded })
     }
 }
 

@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 /// Version: increased when the same specimens get other trains.
-const METHOD: &str = "specimens 1";
+const METHOD: &str = "specimens 2";
 
 /// The settlement of one specimen.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,7 +105,7 @@ impl<'a> Bench<'a> {
                 let passed = specimen.pass(train)?;
                 settled += passed.added;
                 measured.settled.push(settled);
-                measured.stiffness = passed.stiffness;
+                measured.stiffness = Some(passed.stiffness);
                 if tell().is_break() {
                     return Err(NodeError::Stopped);
                 }
