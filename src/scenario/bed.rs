@@ -111,7 +111,7 @@ impl Default for Grains {
             continuous: Given { value: false, origin: Origin::Default },
             support_from_passage: false,
             sleepers_pitch: false,
-            cell_bays: 1,
+            cell_bays: 2,
             check_cells: Given { value: 0, origin: Origin::Default },
             step: None,
             soil_element: None,

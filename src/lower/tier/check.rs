@@ -3,7 +3,7 @@
 use super::cells;
 use super::grains::{READS as GRAINS, headway};
 use super::refused::{self, waits};
-use super::rig::cost::{PassingCells, cells_under_track, trains_of_check};
+use super::rig::cost::{PassingCells, cells_under_track, trains_of_cells};
 use crate::diag::{Diagnostic, Severity};
 use crate::graph::{BedPlan, CellPlan, CellsNode, Cost, Model, Node};
 use crate::lower::Draft;
@@ -43,7 +43,7 @@ pub(super) fn check(draft: &Draft<'_>, blocks: u64) -> Check {
         bays: f64::from(scenario.solve.grains.cell_bays),
         headway_time: node.headway_time,
         alone: train.wheel_base() / train.speed,
-        trains: trains_of_check(plan, blocks),
+        trains: trains_of_cells(plan, blocks as f64, *scenario.solve.grains.tolerance),
     };
     let cost = cells_under_track(draft, passing);
     Check { node: Some(Node::new("check", Model::Check(node))), cost: Some(cost), refusals }

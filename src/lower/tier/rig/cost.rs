@@ -165,25 +165,22 @@ const BESIDE_EACH: f64 = 0.04;
 const CELL_STEPS: f64 = 18e6;
 const BUILT_STEPS: f64 = 30e6;
 const ON_BOTH_CORES: f64 = 0.6;
-/// Trains that a cell computes: the first trains, and a share of the others; at least one in each block
-/// (`docs/validation.md`, cells).
-const FIRST_TRAINS: f64 = 12.0;
-const OTHER_TRAINS: f64 = 0.1;
+/// Trains that a cell computes: the first trains, and a share of the others that is inversely proportional to the
+/// tolerance, here for 5 %; at least one in each block (`docs/validation.md`, cells).
+const FIRST_TRAINS: f64 = 4.0;
+const OTHER_TRAINS: f64 = 0.4;
+const OF_TOLERANCE: f64 = 0.05;
 
-/// Trains that a cell computes which carries sleepers.
-pub(in crate::lower::tier) fn trains_of_cells(blocks: &Blocks) -> f64 {
-    let all = trains_of(blocks);
-    let in_blocks = BlockWeight::Equal.between(blocks, 0, blocks.total);
-    all.min((FIRST_TRAINS + OTHER_TRAINS * (all - FIRST_TRAINS).max(0.0)).max(in_blocks))
+/// Trains that a cell computes of a run of so many blocks.
+pub(in crate::lower::tier) fn trains_of_cells(plan: &Blocks, blocks: f64, tolerance: f64) -> f64 {
+    let all = plan.total as f64 / plan.train.axles().max(1) as f64;
+    let others = OTHER_TRAINS * OF_TOLERANCE / tolerance.max(OTHER_TRAINS * OF_TOLERANCE);
+    all.min((FIRST_TRAINS + others * (all - FIRST_TRAINS).max(0.0)).max(blocks))
 }
 
-/// Trains that a cell computes which checks a law in so many blocks.
-pub(in crate::lower::tier) fn trains_of_check(plan: &Blocks, blocks: u64) -> f64 {
-    trains_of(plan).min(FIRST_TRAINS + blocks as f64)
-}
-
-fn trains_of(blocks: &Blocks) -> f64 {
-    blocks.total as f64 / blocks.train.axles().max(1) as f64
+/// Blocks of a plan that are prescribed.
+pub(in crate::lower::tier) fn blocks_of(plan: &Blocks) -> f64 {
+    BlockWeight::Equal.between(plan, 0, plan.total)
 }
 
 /// The cost of all packings of a track, of the cost of one.
