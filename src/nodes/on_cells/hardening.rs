@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn few_trains_tell_no_law() {
         assert_eq!(Hardening::fitted(&[&by_law(1..=6, 0.5, 0.0)]), None);
-        assert_eq!(Hardening::fitted(&[&by_law(1..=2, 0.5, 0.0); 9]), None);
+        assert_eq!(Hardening::fitted(&[by_law(1..=2, 0.5, 0.0).as_slice(); 9]), None);
         assert_eq!(Hardening::fitted(&[]), None);
     }
 }

@@ -1,6 +1,6 @@
 //! One cell under trains of one's own choice: the settlement of the grains of a scene, measured apart from its track.
 
-use super::cell::{Cell, Passed};
+use super::cell::{Cell, HOLD, Passed};
 use super::forces::TrainForces;
 use super::{Parts, built, recipe};
 use crate::nodes::NodeError;
@@ -54,10 +54,15 @@ impl Specimen {
     /// Runs a copy for some steps of another length, s, with the inertia that its own step needs; the failure if it is
     /// stopped.
     pub fn try_step(&self, step: f64, steps: u64) -> Result<Option<Failure>, NodeError> {
-        let mut bed = self.cell.bed.clone();
-        Stride { step: self.cell.stride, sharing: SHARING }.hold(&mut bed)?;
-        bed.set_time_step(step);
-        Ok(bed.run(steps).err())
+        let (mut bed, stride) = (self.cell.bed.clone(), Stride { step: self.cell.stride, sharing: SHARING });
+        for done in (0..steps).step_by(HOLD as usize) {
+            stride.hold(&mut bed)?;
+            bed.set_time_step(step);
+            if let Err(failure) = bed.run(HOLD.min(steps - done)) {
+                return Ok(Some(failure));
+            }
+        }
+        Ok(None)
     }
 
     /// Lets one train pass.
