@@ -28,7 +28,7 @@ pub struct StepTrial {
 }
 
 impl StepTrial {
-    /// Whether the bed did otherwise than theory says, farther than [`NEAR`] from the limit: contacts form and end
+    /// Whether the bed did otherwise than theory says, farther than a tenth from the limit: contacts form and end
     /// while it runs, and dashpots that do not pull act less than theory assumes.
     pub fn is_against_theory(&self) -> bool {
         (self.share - 1.0).abs() > NEAR && self.stopped.is_some() != (self.share > 1.0)
@@ -266,7 +266,7 @@ mod tests {
         for (allowed, factor) in [(0.02, 1.0), (0.2, 4.0), (1.0, 8.0)] {
             let [found, theory] =
                 [map.change(allowed, factor), map.change_in_theory(allowed, factor)].map(Option::unwrap);
-            assert!((found - theory).abs() < 0.03, "{allowed} {factor}: {found} {theory}");
+            assert!((found - theory).abs() < 0.04, "{allowed} {factor}: {found} {theory}");
         }
         assert_eq!(map.change_in_theory(1.0, 16.0), None, "beyond the speeds of the map");
         assert_eq!(map.matters_from(1.0), Some(8.0));
