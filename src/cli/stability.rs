@@ -22,8 +22,8 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Where the tables and pictures go: `stability`, `exchange` for a scene by a law, `grain_steps`, `grain_speeds` and
-    /// `grains` for a scene on grains.
+    /// Where the tables and pictures go: `stability`, `exchange` for a scene by a law, `grain_steps`, `grain_speeds`
+    /// and `grains` for a scene on grains.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Where packed beds and cells are kept, by what made them.

@@ -183,8 +183,8 @@ impl<'a> RunRecorder<'a> {
         RunRecorder { interrupted: Some(asked), ..self }
     }
 
-    /// The same, that ends the run where its law and the cells that check it part by more than this share of the largest
-    /// settlement.
+    /// The same, that ends the run where its law and the cells that check it part by more than this share of the
+    /// largest settlement.
     pub fn ended_by_check(self, limit: Option<f64>) -> Self {
         RunRecorder { limit_of_check: limit, ..self }
     }

@@ -1,9 +1,9 @@
-//! Maps of the grains of a scene: at which steps its own bed runs away, and at which speeds added inertia changes what a
-//! sleeper feels.
+//! Maps of the grains of a scene: at which steps its own bed runs away, and at which speeds added inertia changes what
+//! a sleeper feels.
 //!
-//! The bed is one cell of tier `cells`, as built. **Steps**: with more and more inertia allowed, the bed runs at shares of
-//! the limit of its network of contacts; theory says that it grows beyond 1. **Speeds**: the train of the scene passes
-//! with its forces compressed in time. Inertia multiplied by `1 + a` has the effect of a speed multiplied by
+//! The bed is one cell of tier `cells`, as built. **Steps**: with more and more inertia allowed, the bed runs at shares
+//! of the limit of its network of contacts; theory says that it grows beyond 1. **Speeds**: the train of the scene
+//! passes with its forces compressed in time. Inertia multiplied by `1 + a` has the effect of a speed multiplied by
 //! `sqrt(1 + a)`; beyond the speed at which the stiffness under the train changes, inertia matters.
 
 use super::specimens::{Bench, kinds_of_cells};
@@ -145,8 +145,8 @@ fn large(change: f64) -> bool {
     change.abs() > MATTERS
 }
 
-/// Maps the bed under most sleepers of a graph of tier `cells`; `None` for another graph. `tell` hears of the building of
-/// the cells, `tried` of each trial, and may end them.
+/// Maps the bed under most sleepers of a graph of tier `cells`; `None` for another graph. `tell` hears of the building
+/// of the cells, `tried` of each trial, and may end them.
 pub fn grain_map(
     graph: &Graph,
     builders: &Builders,

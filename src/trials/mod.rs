@@ -2,8 +2,9 @@
 //!
 //! [`chart`] runs one passage over the settled track with many numerics and sets error against time; [`stability`]
 //! tries extreme numerics, contacts and voids, and a list of hard scenes, and reports the result of each.
-//! [`exchange_map`] tries lengths of blocks, [`grain_map`] steps and speeds of the grains of the scene. [`grains`] measures the cost of steps of a bed of grains. [`runs`]
-//! compares whole runs of a scene by every tier. [`specimens`] fits a settlement law to the grains of a scene.
+//! [`exchange_map`] tries lengths of blocks, [`grain_map`] steps and speeds of the grains of the scene. [`grains`]
+//! measures the cost of steps of a bed of grains. [`runs`] compares whole runs of a scene by every tier. [`specimens`]
+//! fits a settlement law to the grains of a scene.
 
 pub mod chart;
 mod clock;

@@ -116,8 +116,8 @@ impl Cell {
 
     /// Lets one train pass; the sleepers rest before and after it with their weights.
     ///
-    /// The settlement is read at rest, as that of a whole bed. Between two trains the rail lifts the sleepers, and a bed
-    /// without load rises by tenths of a millimetre.
+    /// The settlement is read at rest, as that of a whole bed. Between two trains the rail lifts the sleepers, and a
+    /// bed without load rises by tenths of a millimetre.
     pub fn pass(&mut self, train: &TrainForces, gravity: f64) -> Result<Passed, NodeError> {
         let between: Vec<f64> = train.sleepers.iter().map(|forces| forces[0]).collect();
         self.go_to(&between, [LEAD, 0.0], gravity)?;
