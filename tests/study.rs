@@ -148,13 +148,13 @@ fn a_chart_of_grains_is_planned_within_its_time() {
         "grain_step_30_us",
         "half_the_dashpots",
         "dashpots_in_shear",
-        "larger_grains",
         "other_shape",
         "cells_at_1_percent",
     ] {
         let line = line(name).unwrap_or_else(|| panic!("no {name}: {whole}"));
         assert!(!line.contains("left out") && !line.contains("refused"), "{line}");
     }
+    assert!(line("larger_grains").is_some_and(|line| line.contains("refused: layer `subballast`")), "{whole}");
     // the scene is `full` with blocks of 20 axles, its reference is `monolithic`, and its window is shorter than a zone
     for same in ["full", "monolithic", "every_20", "zone"] {
         assert!(line(same).is_none(), "{whole}");

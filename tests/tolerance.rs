@@ -116,10 +116,10 @@ fn a_budget_lets_the_planner_choose_the_ground() {
     assert!(tiny.why.contains("no tier fits; it is the cheapest, but it needs"), "{tiny:?}");
     let (grains, short) = with(&["solve.budget = 0.2 min", "solve.tolerance = 10 %"]);
     assert!(!grains && short.why.contains("smallest expected error within the budget of 12 s"), "{short:?}");
-    let (_, little) = with(&["solve.budget = 1000 h", "solve.memory = 0.04 GiB", "solve.tolerance = 10 %"]);
+    let (_, little) = with(&["solve.budget = 1000 h", "solve.memory = 0.06 GiB", "solve.tolerance = 10 %"]);
     assert!(little.what.contains("`substructure = cells`"), "{little:?}");
     let full = little.rejected.iter().find(|other| other.what == "full").unwrap();
-    assert!(full.why.contains("more than the limit of 41 MiB"), "{full:?}");
+    assert!(full.why.contains("more than the limit of 62 MiB"), "{full:?}");
 }
 
 #[test]
