@@ -115,9 +115,10 @@ impl<'a> Running<'a> {
         Running { request, compiled, scenario, graph, work, asked, parted, resolved }
     }
 
-    /// The difference of a law and the cells that check it at which the run begins again in the next tier.
+    /// The difference of a law and the cells that check it at which the run begins again in the next tier / largest
+    /// settlement. A run of a chart is compared as it is, and goes on.
     fn limit_of_check(&self) -> Option<f64> {
-        self.compiled.next_tier.map(|next| next.limit)
+        self.compiled.next_tier.filter(|_| !self.request.is_part).map(|next| next.limit)
     }
 
     pub fn source(&self) -> Source<'_> {

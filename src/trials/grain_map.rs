@@ -145,8 +145,8 @@ fn large(change: f64) -> bool {
     change.abs() > MATTERS
 }
 
-/// Maps the bed under most sleepers of a graph of tier `cells`; `None` for another graph. `tell` hears of the building
-/// of the cells, `tried` of each trial, and may end them.
+/// Maps the bed of the first cell of a graph of tier `cells`; `None` for another graph. `tell` hears of the building of
+/// the cells, `tried` of each trial, and may end them.
 pub fn grain_map(
     graph: &Graph,
     builders: &Builders,
