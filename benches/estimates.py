@@ -18,10 +18,12 @@ import subprocess
 import tempfile
 import time
 
+from program import program
+
 here = pathlib.Path(__file__).resolve().parent.parent
 scenes = here / "scenarios"
 arguments = argparse.ArgumentParser()
-arguments.add_argument("binary")
+arguments.add_argument("binary", type=program)
 arguments.add_argument("--only", default="", help="scenes whose name has this text")
 arguments.add_argument("--long", action="store_true", help="also what is planned to take more than ten minutes")
 arguments.add_argument("--threads", default="2")

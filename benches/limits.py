@@ -17,12 +17,14 @@ import subprocess
 import tempfile
 import time
 
+from program import program
+
 here = pathlib.Path(__file__).resolve().parent.parent
 arguments = argparse.ArgumentParser()
-arguments.add_argument("binary")
+arguments.add_argument("binary", type=program)
 arguments.add_argument("--times", type=int, default=3)
 asked = arguments.parse_args()
-binary = pathlib.Path(asked.binary).resolve()
+binary = asked.binary
 TRACK = (here / "scenarios/transition.track").read_text()
 BOX = (here / "scenarios/box_test.track").read_text()
 

@@ -17,8 +17,10 @@ import subprocess
 import sys
 import tempfile
 
+from program import program
+
 arguments = argparse.ArgumentParser()
-arguments.add_argument("binary", help="the example soil_layer")
+arguments.add_argument("binary", type=program, help="the example soil_layer")
 arguments.add_argument("--ccx", default="ccx")
 arguments.add_argument("--sizes", default="0.1")
 asked = arguments.parse_args()

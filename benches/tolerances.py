@@ -20,9 +20,11 @@ import sys
 import tempfile
 import time
 
+from program import program
+
 here = pathlib.Path(__file__).resolve().parent.parent
 arguments = argparse.ArgumentParser()
-arguments.add_argument("binary")
+arguments.add_argument("binary", type=program)
 arguments.add_argument("--only", default="", help="scenes whose name has this text")
 arguments.add_argument("--tolerance", default="5 %")
 arguments.add_argument("--csv", help="file for the table")

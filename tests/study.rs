@@ -210,6 +210,7 @@ fn arguments_of_the_other_chart_are_refused() {
         (["chart", scene, "--dry-run", "-q"].as_slice(), "need `--of run`"),
         (&["chart", scene, "--minutes", "5"], "need `--of run`"),
         (&["chart", scene, "--of", "run", "--dry-run", "--after", "0"], "`--after` is for a chart of a passage"),
+        (&["stability", scene, "--of", "grains", "-q"], "has no grains under its track: leave out `--of grains`"),
     ] {
         let output = trackbed(arguments);
         assert_eq!(output.status.code(), Some(2));

@@ -18,7 +18,8 @@ use std::path::PathBuf;
 /// Map where a passage is stable, and try the scene under stress
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  trackbed stability scenarios/transition.track --out stability")]
+  trackbed stability scenarios/transition.track --out stability
+  trackbed stability scenarios/transition_short.track --of grains --out stability")]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
@@ -26,11 +27,21 @@ pub(super) struct Arguments {
     /// and `grains` for a scene on grains.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Which maps: of passages and the exchange of forces and settlement, of the grains, or all that the scene has.
+    #[arg(long, value_enum, default_value = "all")]
+    of: Maps,
     /// Where packed beds and cells are kept, by what made them.
     #[arg(long, value_name = "DIR", env = "TRACKBED_CACHE")]
     cache: Option<PathBuf>,
     #[arg(long, value_enum, default_value = "human")]
     format: Format,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Maps {
+    All,
+    Passages,
+    Grains,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
@@ -42,65 +53,82 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Ok(subject) => subject,
         Err(outcome) => return outcome,
     };
+    let answer = match mapped(arguments, &subject) {
+        Ok(answer) => answer,
+        Err(outcome) => return outcome,
+    };
+    if let Err(outcome) = subject::write(arguments.out.as_deref(), &answer.files(&subject.scenario.title)) {
+        return outcome;
+    }
+    let outcome = match arguments.format {
+        Format::Human => {
+            answer.stability.iter().for_each(|map| terminal::out(&text(map)));
+            answer.exchange.iter().for_each(|map| terminal::out(&told(map)));
+            answer.grains.iter().for_each(|map| terminal::out(&stability_grains::told(map)));
+            Outcome::Fine
+        }
+        Format::Json => subject::json(&answer),
+    };
+    if answer.stability.is_some_and(|map| map.wrong() > 0) { Outcome::Failed } else { outcome }
+}
+
+/// The maps that were asked for, as far as the scene has them.
+#[derive(Serialize)]
+struct Answer {
+    #[serde(flatten)]
+    stability: Option<Stability>,
+    exchange: Option<ExchangeMap>,
+    grains: Option<GrainMap>,
+}
+
+impl Answer {
+    fn files(&self, title: &str) -> Vec<(&'static str, String)> {
+        let mut files = Vec::new();
+        if let Some(map) = &self.stability {
+            files.extend([("stability.csv", stability_csv(map)), ("stability.svg", report::stability_svg(map))]);
+        }
+        if let Some(map) = &self.exchange {
+            let picture = report::exchange_map_svg(map, title);
+            files.extend([("exchange.csv", exchange_csv(map)), ("exchange.svg", picture)]);
+        }
+        if let Some(map) = &self.grains {
+            files.extend([
+                ("grain_steps.csv", grain_steps_csv(map)),
+                ("grain_speeds.csv", grain_speeds_csv(map)),
+                ("grains.svg", report::grain_map_svg(map, title)),
+            ]);
+        }
+        files
+    }
+}
+
+fn mapped(arguments: &Arguments, subject: &Subject<'_>) -> Result<Answer, Outcome> {
+    let has_grains = subject.planned.graph.has_grains_under_track();
+    if arguments.of == Maps::Grains && !has_grains {
+        terminal::error("this scene has no grains under its track: leave out `--of grains`");
+        return Err(Outcome::Usage);
+    }
+    let (stability, exchange) = match arguments.of {
+        Maps::Grains => (None, None),
+        Maps::All | Maps::Passages => (Some(of_passages(subject)?), exchanged(subject)?),
+    };
+    let grains = match arguments.of {
+        Maps::All | Maps::Grains if has_grains => {
+            stability_grains::mapped(&arguments.scene, arguments.cache.as_deref())?
+        }
+        _ => None,
+    };
+    Ok(Answer { stability, exchange, grains })
+}
+
+fn of_passages(subject: &Subject<'_>) -> Result<Stability, Outcome> {
     let bar = progress::share();
     bar.set_message("passages");
     let mapped = stability(subject.scenario, &subject.planned, &mut |done, all| {
         progress::set(&bar, done, all);
     });
     bar.finish_and_clear();
-    let stability = match mapped {
-        Ok(stability) => stability,
-        Err(cause) => return subject.failed(cause, 0),
-    };
-    let exchange = match exchanged(&subject) {
-        Ok(exchange) => exchange,
-        Err(outcome) => return outcome,
-    };
-    let mut files =
-        vec![("stability.csv", stability_csv(&stability)), ("stability.svg", report::stability_svg(&stability))];
-    if let Some(map) = &exchange {
-        let picture = report::exchange_map_svg(map, &stability.title);
-        files.extend([("exchange.csv", exchange_csv(map)), ("exchange.svg", picture)]);
-    }
-    let grains = if subject.planned.graph.has_grains_under_track() {
-        match stability_grains::mapped(&arguments.scene, arguments.cache.as_deref()) {
-            Ok(grains) => grains,
-            Err(outcome) => return outcome,
-        }
-    } else {
-        None
-    };
-    if let Some(map) = &grains {
-        files.extend([
-            ("grain_steps.csv", grain_steps_csv(map)),
-            ("grain_speeds.csv", grain_speeds_csv(map)),
-            ("grains.svg", report::grain_map_svg(map, &stability.title)),
-        ]);
-    }
-    if let Err(outcome) = subject::write(arguments.out.as_deref(), &files) {
-        return outcome;
-    }
-    let outcome = match arguments.format {
-        Format::Human => {
-            terminal::out(&text(&stability));
-            exchange.iter().for_each(|map| terminal::out(&told(map)));
-            grains.iter().for_each(|map| terminal::out(&stability_grains::told(map)));
-            Outcome::Fine
-        }
-        Format::Json => {
-            subject::json(&Answer { stability: &stability, exchange: exchange.as_ref(), grains: grains.as_ref() })
-        }
-    };
-    if stability.wrong() > 0 { Outcome::Failed } else { outcome }
-}
-
-/// The map of passages, and the maps of the exchange and of the grains if the scene has them.
-#[derive(Serialize)]
-struct Answer<'a> {
-    #[serde(flatten)]
-    stability: &'a Stability,
-    exchange: Option<&'a ExchangeMap>,
-    grains: Option<&'a GrainMap>,
+    mapped.map_err(|cause| subject.failed(cause, 0))
 }
 
 fn exchanged(subject: &Subject<'_>) -> Result<Option<ExchangeMap>, Outcome> {

@@ -10,7 +10,7 @@ use crate::check::{self, Modules, Override};
 use crate::diag::{self, Code, Diagnostic, Severity, Sources};
 use crate::execute::{at_rest, diagnose};
 use crate::graph::Graph;
-use crate::lint::{self, lint};
+use crate::lint::{self, lint, lint_studies};
 use crate::lower::{Lowered, Origins, Planner};
 use crate::scenario::{Scenario, Study};
 use sha2::{Digest, Sha256};
@@ -100,6 +100,7 @@ pub fn compile_with(
         }
         origins = lowered.origins;
         diagnostics.extend(graph.iter().flat_map(|graph| lint(scenario, graph)));
+        diagnostics.extend(graph.iter().flat_map(|graph| lint_studies(scenario, graph, &checked.studies)));
         // mistakes that would stop the run before the first axle
         let runs = graph.iter().filter(|graph| graph.runs && !diag::has_errors(&diagnostics));
         let failure = runs.filter_map(|graph| Some(diagnose(&at_rest(graph).err()?, graph, &origins))).next();

@@ -172,6 +172,7 @@ codes! {
     L1034 Warning "ballast on a structure under a law of force"
     L1035 Warning "speed near the speed of surface waves"
     L1036 Warning "expected error above the tolerance"
+    L1037 Warning "designs compared on one packing"
 }
 
 impl Code {
@@ -219,6 +220,7 @@ impl Code {
             Code::L1034 => "ballast_on_structure",
             Code::L1035 => "surface_waves",
             Code::L1036 => "outside_tolerance",
+            Code::L1037 => "one_packing",
             _ => return None,
         })
     }

@@ -401,9 +401,12 @@ fn rounded(value: f64) -> String {
 
 /// The expected error of a plan, a line for each part.
 fn error_lines(error: &ExpectedError) -> String {
-    let numerical = error
-        .numerical
-        .map(|share| format!("expected error: {} of the largest settlement, by blocks and steps\n", percent(share)));
+    let numerical = error.numerical.map(|share| {
+        format!(
+            "expected error: {} of the largest settlement, by blocks, steps and trains that are left out\n",
+            percent(share)
+        )
+    });
     let of_tier = error.of_tier.map(|share| {
         format!(
             "expected error: {} by this model of the ground, against grains under the whole window: {}\n",

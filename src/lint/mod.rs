@@ -20,6 +20,7 @@ mod irregularity_too_sharp;
 mod law_outside_calibration;
 mod layer_order;
 mod narrow_bed;
+mod one_packing;
 mod outside_tolerance;
 mod over_budget;
 mod overdamped;
@@ -52,7 +53,7 @@ pub use winkler::Winkler;
 
 use crate::diag::{Code, Diagnostic, Severity};
 use crate::graph::{Blocks, Graph, Schedule};
-use crate::scenario::{Loading, Scenario, SettlementLaw, Train};
+use crate::scenario::{Loading, Scenario, SettlementLaw, Study, Train};
 use std::borrow::Cow;
 
 type Rule = fn(&Scenario, &Graph) -> Vec<Diagnostic>;
@@ -101,6 +102,11 @@ pub fn lint(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let views = led_by_each(scenario, graph);
     let each = |rule: &Rule| views.iter().flat_map(|(scenario, graph)| rule(scenario, graph)).collect::<Vec<_>>();
     levelled(RULES.iter().flat_map(each), scenario)
+}
+
+/// Applies the rules of studies to those of a file.
+pub fn lint_studies(scenario: &Scenario, graph: &Graph, studies: &[Study]) -> Vec<Diagnostic> {
+    levelled(studies.iter().filter_map(|study| one_packing::check(scenario, graph, study)), scenario)
 }
 
 /// The traffic for a rule: the leading train, as the scene states it, and the loop over axles.

@@ -43,7 +43,7 @@ pub(super) fn check(draft: &Draft<'_>, blocks: u64) -> Check {
         bays: f64::from(scenario.solve.grains.cell_bays),
         headway_time: node.headway_time,
         alone: train.wheel_base() / train.speed,
-        trains: trains_of_cells(plan, blocks as f64, *scenario.solve.grains.tolerance),
+        trains: trains_of_cells(plan, blocks as f64, cells::left_open(scenario)),
     };
     let cost = cells_under_track(draft, passing);
     Check { node: Some(Node::new("check", Model::Check(node))), cost: Some(cost), refusals }

@@ -85,7 +85,7 @@ pub(super) fn of_rig(scenario: &Scenario, bed: Option<&BedNode>) -> Cost {
     let Filling { grains, pebbles, lifts, light, rest } = filling(scenario, section, length * width);
     let rails = if scenario.solve.grains.both_rails { 2.0 } else { 1.0 };
     let [beside_grains, beside_pebbles] = beside(section, rails * crib::space(scenario, 0, copies * length));
-    let step = STEP * light;
+    let step = scenario.solve.grains.step.map_or(STEP * light, |step| *step);
     let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
     let loads = loads(scenario);
     let pouring = if bed.crib.is_some() { POURING } else { 0.0 };
@@ -131,7 +131,7 @@ pub(in crate::lower::tier) fn grains_under_track(draft: &Draft<'_>, blocks: Opti
     let cell = filling(scenario, section, *section.spacing * width(scenario, number)).pebbles;
     let [beside_grains, beside_pebbles] = beside(section, crib::space(scenario, number, length));
     let (grains, pebbles) = (grains + beside_grains, pebbles + beside_pebbles);
-    let time_step = TRACK_STEP * light;
+    let time_step = scenario.solve.grains.step.map_or(TRACK_STEP * light, |step| *step);
     let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
     let building = BUILDING + if section.crib.is_some() { POURING } else { 0.0 };
     let time = building + blocks.map_or(0.0, |blocks| passing.between(blocks, 0, blocks.total));
@@ -207,7 +207,7 @@ pub(in crate::lower::tier) fn cells_under_track(draft: &Draft<'_>, passing: Pass
     let bay = *section.spacing;
     let Filling { grains, pebbles, lifts, light, .. } = filling(scenario, section, bay * width(scenario, number));
     let [beside_grains, beside_pebbles] = beside(section, crib::space(scenario, number, bay));
-    let time_step = TRACK_STEP * light;
+    let time_step = scenario.solve.grains.step.map_or(TRACK_STEP * light, |step| *step);
     let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
     let building = BUILDING + if section.crib.is_some() { POURING } else { 0.0 };
     let train = BESIDE_EACH + passing.headway_time.unwrap_or(passing.alone + BESIDE_ALONE);
