@@ -122,6 +122,26 @@ fn a_budget_lets_the_planner_choose_the_ground() {
     assert!(full.why.contains("more than the limit of 62 MiB"), "{full:?}");
 }
 
+/// Trains that cells leave out need not be more accurate than the cells.
+#[test]
+fn the_error_of_cells_has_a_part_that_the_tolerance_sets() {
+    let parts = |edits: &[&str]| {
+        let error = plan(edits).error;
+        (error.numerical.unwrap(), error.of_tier.unwrap(), error.share().unwrap())
+    };
+    let cells = "solve.substructure = cells";
+    let (numerical, of_tier, share) = parts(&[cells]);
+    assert_eq!((numerical, of_tier), (0.1, 0.25));
+    assert!((share - 0.1f64.hypot(0.25)).abs() < 1e-12);
+    assert_eq!(parts(&[cells, "solve.tolerance = 2 %"]).0, 0.02);
+    // here the tolerance is for both parts
+    let budget = "solve.budget = 1000 h";
+    let (numerical, _, share) = parts(&[budget, "solve.tolerance = 30 %"]);
+    assert!(numerical > 0.16 && share <= 0.3, "{numerical} {share}");
+    let little = parts(&[budget, "solve.memory = 0.06 GiB", "solve.tolerance = 10 %"]);
+    assert_eq!(little.0, 0.1, "the cells themselves are 25 % off");
+}
+
 #[test]
 fn a_plan_that_misses_its_tolerance_says_what_would_keep_it() {
     let told = |edits: &[&str]| {

@@ -38,6 +38,8 @@ struct Offer {
     bytes: f64,
     /// Expected error / largest settlement; infinite if it is not known.
     error: f64,
+    /// The part of it that no setting changes.
+    of_tier: Option<f64>,
 }
 
 /// Chooses the tier; `None` if the scene leaves no choice.
@@ -70,7 +72,7 @@ pub fn tier(planner: &Planner, scenario: &Scenario) -> Option<Taken> {
     let mut what = format!("`substructure = {}`", taken.tier.name());
     let of_tier = with(scenario, taken.tier);
     let better = offers.iter().filter(fits).filter(|offer| offer.error < taken.error).min_by(cheapest);
-    let of_cells = offers.iter().find(|offer| offer.tier == Tier::Cells).map(|cells| cells.error);
+    let of_cells = offers.iter().find(|offer| offer.tier == Tier::Cells).and_then(|cells| cells.of_tier);
     let limit = of_cells.map(|error| *grains.tolerance - error).filter(|limit| *limit > 0.0);
     let next = better.filter(|_| taken.tier == Tier::Law).zip(limit);
     let checked = next.and_then(|next| Some((next, checked(planner, &of_tier, fits)?)));
@@ -117,7 +119,8 @@ fn offer(planner: &Planner, scenario: &Scenario, tier: Tier) -> Option<Offer> {
     let lowered = planner.lower_with(&of_tier, by_law.as_deref());
     let graph: Graph = lowered.graph.filter(|graph| graph.runs && !has_errors(&lowered.diagnostics))?;
     let (seconds, bytes) = (graph.cost.seconds_on_two_cores, graph.cost.bytes as f64);
-    Some(Offer { tier, seconds, bytes, error: graph.error.share().unwrap_or(f64::INFINITY) })
+    let (error, of_tier) = (graph.error.share().unwrap_or(f64::INFINITY), graph.error.of_tier);
+    Some(Offer { tier, seconds, bytes, error, of_tier })
 }
 
 fn rejected(offer: &Offer, grains: &Grains, budget: f64) -> Rejected {

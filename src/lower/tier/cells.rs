@@ -122,16 +122,23 @@ impl Tier for Cells {
     }
 }
 
-/// Error that trains left out and sleepers that share a cell may add / largest settlement. A scene that names `cells`
+/// Error that trains left out and sleepers that share a cell may add / largest settlement. A scene that names its tier
 /// may state it as `tolerance`. Where `auto` has taken cells, the `tolerance` is for the whole error, and this is the
 /// part that [`OF_CELLS`] leaves.
 pub(super) fn left_open(scenario: &Scenario) -> f64 {
     let grains = &scenario.solve.grains;
     let (tolerance, chosen) = (*grains.tolerance, grains.tier.origin == Origin::Derived);
-    let on_cells = *grains.tier == scenario::Tier::Cells;
-    match grains.tolerance.origin {
-        Origin::Default if on_cells => BESIDE_CELLS,
-        _ if chosen => (tolerance * tolerance - OF_CELLS * OF_CELLS).max(BESIDE_CELLS * BESIDE_CELLS).sqrt(),
+    let is_stated = grains.tolerance.origin != Origin::Default;
+    match *grains.tier {
+        scenario::Tier::Cells if is_stated && chosen => {
+            // a little less, so that both parts together do not exceed the tolerance by rounding
+            let left = 0.999 * (tolerance * tolerance - OF_CELLS * OF_CELLS).max(0.0).sqrt();
+            left.max(BESIDE_CELLS)
+        }
+        scenario::Tier::Cells if is_stated => tolerance,
+        scenario::Tier::Cells => BESIDE_CELLS,
+        // cells that check a law
+        _ if chosen => BESIDE_CELLS,
         _ => tolerance,
     }
 }
