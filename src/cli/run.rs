@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
 fn run_here(arguments: &Arguments) -> Outcome {
     let request = arguments.request();
     let Some(compiled) = request.compile() else { return Outcome::Usage };
-    let next = compiled.next_tier.map(|next| (next, request.in_tier(next.tier)));
+    let next = compiled.next_tier.map(|next| (next, request.in_next(next)));
     let has_begun_again = |next: &Request| !arguments.force && is_in(next, &arguments.out);
     if let Some((_, next)) = next.as_ref().filter(|(_, next)| has_begun_again(next)) {
         return next
@@ -77,7 +77,7 @@ fn run_here(arguments: &Arguments) -> Outcome {
             .map_or(Outcome::Usage, |compiled| attempt(arguments, next, &compiled, arguments.mode()).0);
     }
     let (outcome, parted) = attempt(arguments, &request, &compiled, arguments.mode());
-    let (Some((axles, share)), Some((NextTier { tier, limit }, next))) = (parted, next) else { return outcome };
+    let (Some((axles, share)), Some((NextTier { tier, limit, .. }, next))) = (parted, next) else { return outcome };
     terminal::note(&format!(
         "after {axles} axles law and cells part by {} of the largest settlement, more than the {} that the `tolerance` \
          leaves: the run begins again with `substructure = {}`\n",

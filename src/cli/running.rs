@@ -8,7 +8,7 @@ use super::scene::{PassArguments, SceneArguments, SeedArgument};
 use super::task::Packings;
 use super::{Outcome, interrupt, memory, pack, report, stored, terminal};
 use crate::check::Override;
-use crate::compile::{Compiled, fingerprint};
+use crate::compile::{Compiled, NextTier, fingerprint};
 use crate::diag::{Code, Diagnostic, Sources};
 use crate::execute::{self, Both, Ending, Event, Executor, Listener};
 use crate::graph::Graph;
@@ -16,9 +16,9 @@ use crate::lower::Parameter;
 use crate::results::{
     self, BedTestsView, BlockRow, Label, NamedBytes, Packing, Parting, ResultsError, Run, RunRecorder, Scalar, Source,
 };
-use crate::scenario::{Scenario, Tier};
+use crate::scenario::Scenario;
 use crate::store::{Beds, Directory, Work};
-use crate::units::number;
+use crate::units::{number, percent};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -68,11 +68,13 @@ impl Request {
         Request { scene: self.scene.with_seed(&SeedArgument::with(seed)), ..self.clone() }
     }
 
-    /// The same in another tier.
-    pub fn in_tier(&self, tier: Tier) -> Request {
-        let of_tier = Override { path: "solve.substructure".into(), value: tier.name().into() };
+    /// The same in the next tier.
+    pub fn in_next(&self, next: NextTier) -> Request {
+        let edit = |path: &str, value: String| Override { path: path.into(), value };
+        let of_tier = edit("solve.substructure", next.tier.name().into());
+        let tolerance = next.tolerance.map(|share| edit("solve.tolerance", percent(share)));
         let SceneArguments { file, set } = self.scene.clone();
-        let set = set.into_iter().chain([of_tier]).collect();
+        let set = set.into_iter().chain([of_tier]).chain(tolerance).collect();
         Request { scene: SceneArguments { file, set }, ..self.clone() }
     }
 

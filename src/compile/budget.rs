@@ -8,7 +8,7 @@
 
 use super::by_law;
 use crate::diag::has_errors;
-use crate::graph::{Decision, Graph, Rejected};
+use crate::graph::{Decision, ExpectedError, Graph, Rejected};
 use crate::lower::Planner;
 use crate::scenario::{Given, Grains, Loading, Origin, Scenario, Tier};
 use crate::units::{duration, number, percent};
@@ -26,6 +26,8 @@ pub struct NextTier {
     pub tier: Tier,
     /// Difference / largest settlement that the tolerance leaves beside the expected error of cells.
     pub limit: f64,
+    /// The tolerance of trains that are left out there, if the planner has one.
+    pub tolerance: Option<f64>,
 }
 
 /// Cells of each kind that check a law.
@@ -38,8 +40,8 @@ struct Offer {
     bytes: f64,
     /// Expected error / largest settlement; infinite if it is not known.
     error: f64,
-    /// The part of it that no setting changes.
-    of_tier: Option<f64>,
+    /// Its parts.
+    parts: ExpectedError,
 }
 
 /// Chooses the tier; `None` if the scene leaves no choice.
@@ -72,13 +74,14 @@ pub fn tier(planner: &Planner, scenario: &Scenario) -> Option<Taken> {
     let mut what = format!("`substructure = {}`", taken.tier.name());
     let of_tier = with(scenario, taken.tier);
     let better = offers.iter().filter(fits).filter(|offer| offer.error < taken.error).min_by(cheapest);
-    let of_cells = offers.iter().find(|offer| offer.tier == Tier::Cells).and_then(|cells| cells.of_tier);
+    let of_cells = offers.iter().find(|offer| offer.tier == Tier::Cells).and_then(|cells| cells.parts.of_tier);
     let limit = of_cells.map(|error| *grains.tolerance - error).filter(|limit| *limit > 0.0);
     let next = better.filter(|_| taken.tier == Tier::Law).zip(limit);
     let checked = next.and_then(|next| Some((next, checked(planner, &of_tier, fits)?)));
     let (scenario, next) = match checked {
         Some(((better, limit), checked)) => {
             let (cells, tier) = (*checked.solve.grains.check_cells, better.tier);
+            let tolerance = better.parts.numerical;
             what += &format!(", checked by cells of grains under {cells} sleepers of each kind");
             why += &format!(
                 "; where law and cells part by more than {} of the largest settlement, the run begins again with \
@@ -86,7 +89,7 @@ pub fn tier(planner: &Planner, scenario: &Scenario) -> Option<Taken> {
                 percent(limit),
                 tier.name()
             );
-            (checked, Some(NextTier { tier, limit }))
+            (checked, Some(NextTier { tier, limit, tolerance }))
         }
         None => (of_tier, None),
     };
@@ -119,8 +122,8 @@ fn offer(planner: &Planner, scenario: &Scenario, tier: Tier) -> Option<Offer> {
     let lowered = planner.lower_with(&of_tier, by_law.as_deref());
     let graph: Graph = lowered.graph.filter(|graph| graph.runs && !has_errors(&lowered.diagnostics))?;
     let (seconds, bytes) = (graph.cost.seconds_on_two_cores, graph.cost.bytes as f64);
-    let (error, of_tier) = (graph.error.share().unwrap_or(f64::INFINITY), graph.error.of_tier);
-    Some(Offer { tier, seconds, bytes, error, of_tier })
+    let error = graph.error.share().unwrap_or(f64::INFINITY);
+    Some(Offer { tier, seconds, bytes, error, parts: graph.error })
 }
 
 fn rejected(offer: &Offer, grains: &Grains, budget: f64) -> Rejected {

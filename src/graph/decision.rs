@@ -35,8 +35,8 @@ impl Rejected {
 /// Expected error of a plan / largest settlement, as far as charts show it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ExpectedError {
-    /// By blocks, mesh, steps and trains that are left out, against a fine run of the same models; `None` if only the run
-    /// can tell.
+    /// By blocks, mesh, steps and trains that are left out, against a fine run of the same models; `None` if only the
+    /// run can tell.
     pub numerical: Option<f64>,
     /// By the tier, against grains under the whole window; `None` if the scene has no grains or no chart shows it.
     pub of_tier: Option<f64>,
@@ -45,8 +45,8 @@ pub struct ExpectedError {
 }
 
 impl ExpectedError {
-    /// Both together, as far as they are known; `None` if neither is. They do not depend on each other, so their squares
-    /// add up.
+    /// Both together, as far as they are known; `None` if neither is. They do not depend on each other, so their
+    /// squares add up.
     pub fn share(&self) -> Option<f64> {
         match (self.numerical, self.of_tier) {
             (None, None) => None,

@@ -10,7 +10,7 @@ use crate::scenario::{Scenario, Study};
 pub(super) fn check(scenario: &Scenario, graph: &Graph, study: &Study) -> Option<Diagnostic> {
     let several = study.repeats.are_several() || scenario.solve.grains.repeats.are_several();
     let of_packings = study.axes.iter().any(|axis| axis.path == "solve.seed");
-    if !graph.has_grains_under_track() || several || of_packings {
+    if !graph.runs || !graph.has_grains_under_track() || several || of_packings {
         return None;
     }
     let message = format!(

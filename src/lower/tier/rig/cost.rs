@@ -166,8 +166,8 @@ const CELL_STEPS: f64 = 18e6;
 const BUILT_STEPS: f64 = 30e6;
 const ON_BOTH_CORES: f64 = 0.6;
 /// Trains that a cell computes: the first trains, and a share of the others that is inversely proportional to the
-/// tolerance, here for 10 %; at least one in each block. 500 axles on the paper's bed, which rises later, took 0.8; on a
-/// tamped bed 0.4 (`docs/validation.md`, cells).
+/// tolerance, here for 10 %; at least one in each block. 500 axles on the paper's bed, which rises later, took 0.8; on
+/// a tamped bed 0.4 (`docs/validation.md`, cells).
 const FIRST_TRAINS: f64 = 4.0;
 const OTHER_TRAINS: f64 = 0.6;
 const OF_TOLERANCE: f64 = 0.1;
