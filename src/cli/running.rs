@@ -309,7 +309,7 @@ const NOTHING_KEPT: &str = "there was no state to keep yet";
 /// Says where exchanges of forces and settlement overshot.
 fn warn(run: &Run, running: &Running<'_>) {
     let Some(found) = BlockRow::overshoot(&run.blocks) else { return };
-    let diagnostic = Diagnostic::new(Code::E0807, found).help("write `update_every = adaptive`");
+    let diagnostic = Diagnostic::new(Code::E0807, found).help("write `update_every = adaptive`, or shorter blocks");
     let diagnostic = match running.compiled.origins.span(Parameter::Update) {
         Some(span) => diagnostic.label(span, "too long between two exchanges"),
         None => diagnostic,

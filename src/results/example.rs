@@ -259,6 +259,7 @@ fn filled(scenario: Scenario) -> Run {
             error_m: step / 50.0,
             overshoot: 0.2,
             sawtooth: 0.0,
+            unevenness: 0.02,
             rejected: 0,
             overshot: 0,
             passages: 2,

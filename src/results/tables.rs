@@ -1,6 +1,7 @@
 //! The rows of a run's tables: one struct a file, one field a column. Values are SI.
 
 use crate::nodes::Bonds;
+use crate::units::number;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
@@ -178,6 +179,10 @@ pub struct BlockRow {
     pub overshoot: f64,
     /// Sawtooth amplitude of the block's settlement along the track, as a share of `max_settlement_step_m`.
     pub sawtooth: f64,
+    /// Largest settlement of the block at a sleeper beside the mean of its two neighbours, as a share of the largest
+    /// displacement of the rail under the train: from about 1 the sleeper has lost or gained its load within the block.
+    #[serde(default)]
+    pub unevenness: f64,
     /// Longer blocks that were tried and rejected, and the number of rejected blocks that overshot.
     pub rejected: u64,
     pub overshot: u64,
@@ -194,6 +199,8 @@ pub struct BlockRow {
 
 /// Above this amplitude a sawtooth is larger than unequal sleeper loads can cause.
 const SAWTOOTH: f64 = 0.1;
+/// Above this unevenness forces change within the block by more than about half.
+const UNEVEN: f64 = 0.5;
 
 impl BlockRow {
     /// Bonds of glued grains after the block.
@@ -217,7 +224,17 @@ impl BlockRow {
             let tried: u64 = cured.iter().map(|b| b.overshot).sum();
             format!("{tried} blocks overshot and were repeated with half the length, down to {shortest} axles")
         });
-        let said: Vec<String> = cured.into_iter().chain(sawtooth).collect();
+        let uneven = blocks.iter().max_by(|a, b| a.unevenness.total_cmp(&b.unevenness));
+        let uneven = uneven.filter(|b| b.unevenness > UNEVEN).map(|b| {
+            format!(
+                "in the {} axles after {} axles a sleeper settled beside its neighbours by {} times the displacement of \
+                 the rail under a train, so its load changed within this block, and the block had the load of its start",
+                b.block_axles,
+                b.axles,
+                number((10.0 * b.unevenness).round() / 10.0)
+            )
+        });
+        let said: Vec<String> = cured.into_iter().chain(sawtooth).chain(uneven).collect();
         (!said.is_empty()).then(|| said.join("; "))
     }
 }
@@ -236,6 +253,7 @@ impl Row for BlockRow {
         "error_m",
         "overshoot",
         "sawtooth",
+        "unevenness",
         "rejected",
         "overshot",
         "passages",
@@ -244,6 +262,15 @@ impl Row for BlockRow {
         "bonds",
         "broken_bonds",
     ];
+}
+
+/// Largest settlement of a block at a seat beside the mean of both neighbours, m. Seats that are not on sleepers, and
+/// their neighbours, do not count: there the settlement of the track has a step.
+pub(super) fn beside_neighbours(before: &[f64], after: &[f64], is_ballasted: &[bool]) -> f64 {
+    let added: Vec<f64> = before.iter().zip(after).map(|(before, after)| after - before).collect();
+    let beside = |at: &[f64]| (at[1] - (at[0] + at[2]) / 2.0).abs();
+    let three = added.windows(3).zip(is_ballasted.windows(3));
+    three.filter(|(_, ballasted)| ballasted.iter().all(|is| *is)).map(|(at, _)| beside(at)).fold(0.0, f64::max)
 }
 
 /// One value of a history (`histories.parquet`), in long format. Fields along the track that belong to no moment of
@@ -261,4 +288,29 @@ pub struct HistoryRow {
     pub value: f64,
     /// Name of the train; empty without a train, for example for settlement.
     pub train: SmolStr,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::example;
+
+    #[test]
+    fn a_sleeper_that_settles_beside_its_neighbours_is_told() {
+        let (before, mut after) = ([1e-3; 6], [3e-3; 6]);
+        let ballasted = [true, true, true, true, true, false];
+        after[5] = 1e-3;
+        assert_eq!(beside_neighbours(&before, &after, &ballasted), 0.0, "even up to the slab");
+        after[2] = 8e-3;
+        assert!((beside_neighbours(&before, &after, &ballasted) - 5e-3).abs() < 1e-12);
+
+        let mut blocks = example::transition().blocks;
+        assert_eq!(BlockRow::overshoot(&blocks), None);
+        (blocks[3].unevenness, blocks[4].unevenness) = (3.26, 0.7);
+        let said = BlockRow::overshoot(&blocks).unwrap();
+        assert!(
+            said.starts_with("in the 20 axles after 60 axles a sleeper settled beside its neighbours by 3.3 times"),
+            "{said}"
+        );
+    }
 }
