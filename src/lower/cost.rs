@@ -22,8 +22,9 @@ const TIMES: f64 = 51.0;
 /// Seconds of a state of rest, and of the tables and pages of any run.
 const AT_REST: f64 = 0.01;
 const WRITING: f64 = 0.06;
-/// Bytes per unknown: bands and the windows of the inverse.
+/// Bytes per unknown: bands and the windows of the inverse; and of the program itself.
 const BYTES: u64 = 6_000;
+const PROGRAM: u64 = 19 << 20;
 
 /// The cost of a track at rest.
 pub(super) fn at_rest(node: &TrackNode) -> Cost {
@@ -56,7 +57,7 @@ pub(super) fn of_blocks(node: &TrackNode, blocks: &Blocks, outlook: &Outlook) ->
     Cost {
         seconds: seconds + standing + apart,
         seconds_on_two_cores: seconds * side_by_side(blocks) + 0.5 * standing + apart,
-        bytes: unknowns as u64 * BYTES,
+        bytes: PROGRAM + unknowns as u64 * BYTES,
         work: Work::Passages(work),
     }
 }
@@ -114,7 +115,7 @@ pub(super) fn with_records(cost: &mut Cost, blocks: &Blocks, records: &[Record])
 
 /// A cost without parallel work.
 fn cost(seconds: f64, work: PassageWork, unknowns: usize) -> Cost {
-    Cost { seconds, seconds_on_two_cores: seconds, bytes: unknowns as u64 * BYTES, work: Work::Passages(work) }
+    Cost { seconds, seconds_on_two_cores: seconds, bytes: PROGRAM + unknowns as u64 * BYTES, work: Work::Passages(work) }
 }
 
 /// Rail and slab nodes have two unknowns each, a sleeper one.
