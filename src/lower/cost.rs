@@ -115,7 +115,12 @@ pub(super) fn with_records(cost: &mut Cost, blocks: &Blocks, records: &[Record])
 
 /// A cost without parallel work.
 fn cost(seconds: f64, work: PassageWork, unknowns: usize) -> Cost {
-    Cost { seconds, seconds_on_two_cores: seconds, bytes: PROGRAM + unknowns as u64 * BYTES, work: Work::Passages(work) }
+    Cost {
+        seconds,
+        seconds_on_two_cores: seconds,
+        bytes: PROGRAM + unknowns as u64 * BYTES,
+        work: Work::Passages(work),
+    }
 }
 
 /// Rail and slab nodes have two unknowns each, a sleeper one.

@@ -114,7 +114,7 @@ impl Tier for Cells {
                 evidence:
                     "neither rail nor grains connect the cells: on three packings of the shortened scene they settle \
                            by 7 to 15 % less than the whole bed in the far field, and by 25 % less to 10 % more beside \
-                           the structure"
+                           the structure; in beds of grains of 45 mm and more the worst sleeper is 20 to 73 % off"
                         .into(),
             },
             runs: asked && refusals.is_empty(),
