@@ -613,6 +613,7 @@ impl RunRecorder<'_> {
         let ballasted: Vec<bool> = self.track().seats.iter().map(|seat| seat.is_ballasted()).collect();
         let displacement = largest(|p| p.max_rail_displacement);
         let uneven = beside_neighbours(before, after, &ballasted);
+        let is_adaptive = self.graph.blocks().is_some_and(|blocks| blocks.adaptive().is_some());
         let steps = before.iter().zip(after).map(|(b, a)| a - b).fold(0.0, f64::max);
         self.tables.blocks.push(BlockRow {
             axles,
@@ -626,7 +627,7 @@ impl RunRecorder<'_> {
             error_m: measured.error,
             overshoot: measured.overshoot.unwrap_or(0.0),
             sawtooth: measured.sawtooth,
-            unevenness: if displacement > 0.0 { uneven / displacement } else { 0.0 },
+            unevenness: if displacement > 0.0 && !is_adaptive { uneven / displacement } else { 0.0 },
             rejected: measured.rejected,
             overshot: measured.overshot,
             passages: measured.passages,

@@ -181,6 +181,7 @@ pub struct BlockRow {
     pub sawtooth: f64,
     /// Largest settlement of the block at a sleeper beside the mean of its two neighbours, as a share of the largest
     /// displacement of the rail under the train: from about 1 the sleeper has lost or gained its load within the block.
+    /// 0 for adaptive blocks, whose forces follow the settlement.
     #[serde(default)]
     pub unevenness: f64,
     /// Longer blocks that were tried and rejected, and the number of rejected blocks that overshot.
