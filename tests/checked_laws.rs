@@ -170,8 +170,8 @@ fn chosen(tolerance: &str) -> String {
 
 #[test]
 fn a_law_that_the_planner_chooses_is_checked() {
-    // the law states 5 %, and cells 25 %
-    let found = compiled(&chosen("40 %"));
+    // the law states 5 %, and cells 42 %
+    let found = compiled(&chosen("57 %"));
     let next = found.next_tier.expect("a check");
     assert_eq!(next.tier, Tier::Cells);
     assert!((next.limit - 0.15).abs() < 1e-9, "{next:?}");
@@ -181,16 +181,16 @@ fn a_law_that_the_planner_chooses_is_checked() {
     assert!(why.contains("part by more than 15 % of the largest settlement"), "{why}");
 
     let next = |text: &str| compiled(text).next_tier;
-    assert_eq!(next(&chosen("28 %")), None, "cells are chosen, and nothing checks them");
-    assert_eq!(next(&chosen("40 %").replace("budget", "check_cells = 0, budget")), None, "the scene wants no check");
-    assert_eq!(next(&chosen("40 %").replace("budget", "substructure = law, budget")), None, "the scene has decided");
+    assert_eq!(next(&chosen("45 %")), None, "cells are chosen, and nothing checks them");
+    assert_eq!(next(&chosen("57 %").replace("budget", "check_cells = 0, budget")), None, "the scene wants no check");
+    assert_eq!(next(&chosen("57 %").replace("budget", "substructure = law, budget")), None, "the scene has decided");
 }
 
 #[test]
 fn a_run_begins_again_on_grains_where_its_law_parts_from_them() {
     let folder = tempfile::tempdir().unwrap();
     let (file, out) = (folder.path().join("scene.track"), folder.path().join("out"));
-    fs::write(&file, chosen("40 %")).unwrap();
+    fs::write(&file, chosen("57 %")).unwrap();
     let cache = folder.path().join("beds");
     let arguments = |more: &[&str]| {
         let own = ["run", file.to_str().unwrap(), "--out", out.to_str().unwrap(), "--cache", cache.to_str().unwrap()];

@@ -104,9 +104,9 @@ fn a_budget_lets_the_planner_choose_the_ground() {
         let graph = plan(edits);
         (graph.node("grains").is_some(), choice(&graph).unwrap().clone())
     };
-    let (grains, law) = with(&["solve.budget = 1000 h", "solve.tolerance = 50 %"]);
-    assert!(!grains && law.what.contains("`substructure = law`"), "the law is within half, and cheapest: {law:?}");
-    let (grains, cells) = with(&["solve.budget = 1000 h", "solve.tolerance = 30 %"]);
+    let (grains, law) = with(&["solve.budget = 1000 h", "solve.tolerance = 80 %"]);
+    assert!(!grains && law.what.contains("`substructure = law`"), "the law is within this, and cheapest: {law:?}");
+    let (grains, cells) = with(&["solve.budget = 1000 h", "solve.tolerance = 45 %"]);
     assert!(grains && cells.what.contains("`substructure = cells`"), "{cells:?}");
     let (_, full) = with(&["solve.budget = 1000 h", "solve.tolerance = 10 %"]);
     assert!(full.what.contains("`substructure = full`"), "{full:?}");
@@ -131,16 +131,16 @@ fn the_error_of_cells_has_a_part_that_the_tolerance_sets() {
     };
     let cells = "solve.substructure = cells";
     let (numerical, of_tier, share) = parts(&[cells]);
-    assert_eq!((numerical, of_tier), (0.1, 0.25));
-    assert!((share - 0.1f64.hypot(0.25)).abs() < 1e-12);
+    assert_eq!((numerical, of_tier), (0.1, 0.42));
+    assert!((share - 0.1f64.hypot(0.42)).abs() < 1e-12);
     assert_eq!(parts(&[cells, "solve.tolerance = 2 %"]).0, 0.02);
     // here the tolerance is for both parts
     let budget = "solve.budget = 1000 h";
-    let (numerical, _, share) = parts(&[budget, "solve.tolerance = 26 %"]);
-    assert!(numerical > 0.07 && numerical < 0.1 && share <= 0.26, "{numerical} {share}");
-    assert_eq!(parts(&[budget, "solve.tolerance = 30 %"]).0, 0.1);
+    let (numerical, _, share) = parts(&[budget, "solve.tolerance = 43 %"]);
+    assert!(numerical > 0.07 && numerical < 0.1 && share <= 0.43, "{numerical} {share}");
+    assert_eq!(parts(&[budget, "solve.tolerance = 45 %"]).0, 0.1);
     let little = parts(&[budget, "solve.memory = 0.06 GiB", "solve.tolerance = 10 %"]);
-    assert_eq!(little.0, 0.1, "the cells themselves are 25 % off");
+    assert_eq!(little.0, 0.1, "the cells themselves are 42 % off");
 }
 
 #[test]
@@ -150,10 +150,10 @@ fn a_plan_that_misses_its_tolerance_says_what_would_keep_it() {
         found.map(|found| (found.message.clone(), format!("{:?}", found.help)))
     };
     let (message, help) = told(&["solve.budget = 0.2 min"]).unwrap();
-    assert!(message.starts_with("tier `law` has an expected error of 48 %"), "{message}");
+    assert!(message.starts_with("tier `law` has an expected error of 78 %"), "{message}");
     assert!(message.ends_with("more than the tolerance of 5 %"), "{message}");
     assert!(help.contains("`substructure = full` has an expected error of 1 %"), "{help}");
-    assert_eq!(told(&["solve.budget = 0.2 min", "solve.tolerance = 50 %"]), None);
+    assert_eq!(told(&["solve.budget = 0.2 min", "solve.tolerance = 80 %"]), None);
     assert_eq!(told(&["solve.budget = 0.2 min", "solve.substructure = law"]), None, "the scene has decided");
 }
 

@@ -5,7 +5,7 @@ use super::exchange::Exchange;
 use super::machine::RunError;
 use crate::graph::{Block, Blocks, Clock, Control, Runner, TrackNode};
 use crate::nodes::{
-    CheckingCells, Following, Forces, Load, NodeError, PassageOutcome, StandingForces, Substructure, Superstructure,
+    CheckingCells, Following, Forces, Joined, Load, NodeError, PassageOutcome, StandingForces, Substructure, Superstructure,
     TrackSystem,
 };
 use crate::solvers::settlement::Peak;
@@ -38,6 +38,18 @@ pub(super) struct Followed<'e> {
 pub(super) fn loads<'f>(followed: &'f [Followed<'_>]) -> Vec<Load<'f>> {
     let load = |one: &'f Followed<'_>| Load { followed: Some(&one.peaks), ..Load::new(one.passage, one.trains) };
     followed.iter().map(load).collect()
+}
+
+/// Runs of trains after so many axles, each with what runs ahead of it and behind it.
+fn joined<'f>(blocks: &Blocks, axles: u64, loads: &[Load<'f>]) -> Vec<Load<'f>> {
+    let mut ends = axles;
+    let of_train = blocks.train.axles();
+    let join = |load: &Load<'f>| {
+        let begins = ends;
+        ends += of_train * load.trains;
+        Load { joined: Joined { ahead: !blocks.is_gap(begins), behind: !blocks.is_gap(ends) }, ..*load }
+    };
+    loads.iter().map(join).collect()
 }
 
 /// A track on its ground.
@@ -141,6 +153,7 @@ impl Pair<'_> {
     /// Lets a block pass, after which the track stands on what the ground answers then. If the ground fails, its state
     /// does not change.
     pub fn advance(&mut self, axles: u64, loads: &[Load<'_>], follow: &mut Following<'_>) -> Result<(), RunError> {
+        let loads = &joined(self.blocks, axles, loads);
         let mark = self.ground.mark();
         if let Err(cause) = self.ground.advance_and_follow(loads, follow) {
             self.ground.roll_back(mark);

@@ -58,6 +58,13 @@ impl Blocks {
         self.tampings.iter().filter(move |tamping| tamping.after.contains(&axles))
     }
 
+    /// Whether no train is on the track after `axles` axles: before the first train and behind the last one, at a
+    /// tamping, and, where trains of several kinds or in both directions run, after every run of equal trains.
+    pub fn is_gap(&self, axles: u64) -> bool {
+        let is_one_kind = self.others.is_empty() && self.train.runs != Runs::BothWays;
+        axles == 0 || axles >= self.total || !is_one_kind || self.tamped_after(axles).next().is_some()
+    }
+
     /// The next axle count at which a block ends: at a record, at a tamping, at the start of another kind of train, or
     /// at the end of the run.
     pub fn stop(&self, before: u64) -> u64 {

@@ -28,7 +28,7 @@ impl<'a> CheckingCells<'a> {
     pub fn advance(&mut self, loads: &[Load<'_>], follow: &mut Following<'_>) -> Result<(), NodeError> {
         let passages: Vec<PassageOutcome> = loads.iter().map(|load| self.followed(load)).collect();
         let loads: Vec<Load<'_>> =
-            passages.iter().zip(loads).map(|(passage, load)| Load::new(passage, load.trains)).collect();
+            passages.iter().zip(loads).map(|(passage, load)| Load { followed: None, passage, ..*load }).collect();
         let mut progress = |told: Told<'_>| match told {
             Told::Stage(Stage::Passage, share) => follow(Told::Stage(Stage::Check, share)),
             Told::Stage(stage, share) => follow(Told::Stage(stage, share)),

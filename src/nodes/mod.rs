@@ -95,12 +95,22 @@ pub struct Load<'a> {
     /// Largest forces of its wheels where they have followed the settlement since; index by seat, then by wheel.
     pub followed: Option<&'a [Vec<Peak>]>,
     pub trains: u64,
+    pub joined: Joined,
+}
+
+/// Whether equal trains run directly ahead of a run of trains and directly behind it, where trains follow each other
+/// closely. Such a run begins and ends between the two halves of a train, where the track between them carries nothing;
+/// a run without neighbours has its first and its last half in addition.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Joined {
+    pub ahead: bool,
+    pub behind: bool,
 }
 
 impl<'a> Load<'a> {
-    /// Trains with the forces of a passage as it was computed.
+    /// Trains with the forces of a passage as it was computed, with no other train ahead or behind.
     pub fn new(passage: &'a PassageOutcome, trains: u64) -> Load<'a> {
-        Load { passage, followed: None, trains }
+        Load { passage, followed: None, trains, joined: Joined::default() }
     }
 
     /// Largest force of each wheel of a train on the support of every seat.

@@ -32,9 +32,9 @@ const READS: Reads = Reads {
     acts_where: "where trains run over supports that settle by a law",
 };
 
-/// Error of a published law / settlement of grains: `transition_short.track`, 20 axles, three packings
-/// (docs/validation.md, "The shortened scene in every tier").
-const OF_LAW: f64 = 0.48;
+/// Largest error of a published law / largest settlement of grains, of any sleeper in eight scenes (docs/validation.md,
+/// "Expected errors on grains").
+const OF_LAW: f64 = 0.78;
 
 impl Tier for SettlementLaws {
     fn name(&self) -> &'static str {
@@ -108,7 +108,7 @@ fn of_law(scenario: &Scenario) -> ExpectedError {
         of_tier: has_grains.then_some(OF_LAW),
         evidence:
             "published laws differ from each other by a factor of ten and more, and the law of the shortened scene \
-                   is 48 % below its grains"
+                   is 45 to 78 % off in eight scenes of grains"
                 .into(),
     }
 }

@@ -114,7 +114,7 @@ impl Cell {
         self.unloaded = self.level() - self.weights[self.middle] / stiffness;
     }
 
-    /// Lets one train pass; the sleepers rest before and after it with their weights.
+    /// Lets one train, or half of one, pass; the sleepers rest before and after it with their weights.
     ///
     /// The settlement is read at rest, as that of a whole bed. Between two trains the rail lifts the sleepers, and a
     /// bed without load rises by tenths of a millimetre.
@@ -123,14 +123,12 @@ impl Cell {
         self.go_to(&between, [LEAD, 0.0], gravity)?;
         let (begin, start) = (self.level(), self.bed.time());
         let table = |forces: &Vec<f64>| {
-            // a train ends as the next one begins
-            let forces: Vec<f64> = forces.iter().chain(&forces[..1]).copied().collect();
-            (forces.iter().enumerate().map(|(at, _)| start + train.interval * at as f64).collect(), forces)
+            ((0..forces.len()).map(|at| start + train.interval * at as f64).collect(), forces.clone())
         };
         self.drive(&train.sleepers.iter().map(table).collect::<Vec<_>>(), gravity);
         let mut deepest = begin;
         self.run(train.time(), |cell| deepest = deepest.max(cell.level()))?;
-        self.forces = between;
+        self.forces = train.sleepers.iter().map(|forces| forces[forces.len() - 1]).collect();
         self.go_to(&self.weights.clone(), [LEAD, STAND - READ], gravity)?;
         let rest = self.mean_level(READ)?;
         if rest > SUNK * self.height {

@@ -21,6 +21,7 @@ use crate::store::{Beds, recipe_hash};
 use book::{Book, laws};
 use cell::Cell;
 pub use cell::Passed;
+use forces::Following as FollowingTrains;
 pub use forces::TrainForces;
 use hardening::Jump;
 use layout::Layout;
@@ -226,7 +227,7 @@ impl Live {
         if begins {
             self.block().computed = vec![0; self.cells.len()];
             for ((book, train), plan) in self.books.iter_mut().zip(&trains).zip(&self.layout.plans) {
-                book.begin(train.load(plan.middle));
+                book.begin(train.among.load(plan.middle));
             }
         }
         loop {
@@ -238,7 +239,7 @@ impl Live {
             }
             let share = self.share(&jumps, load.trains);
             tell_stage_and_state((Stage::Passage, share), &|| self.save(), follow)?;
-            for (cell, passed) in self.pass(&due, &trains, node.gravity)? {
+            for (cell, passed) in self.pass(&due, &trains, load, node.gravity)? {
                 self.books[cell].note(&passed);
                 self.block().computed[cell] += 1;
             }
@@ -288,8 +289,15 @@ impl Live {
         jumps.iter().zip(computed).map(of_cell).sum::<f64>() / jumps.len() as f64
     }
 
-    /// Lets one train pass each of these cells, side by side.
-    fn pass(&mut self, due: &[usize], trains: &[TrainForces], gravity: f64) -> Result<Vec<(usize, Passed)>, NodeError> {
+    /// Lets one train of a load pass each of these cells, side by side.
+    fn pass(
+        &mut self,
+        due: &[usize],
+        trains: &[Trains],
+        load: &Load<'_>,
+        gravity: f64,
+    ) -> Result<Vec<(usize, Passed)>, NodeError> {
+        let computed = self.underway.as_ref().map_or(&[] as &[usize], |underway| &underway.computed);
         let threads = rayon::current_num_threads();
         let cells: Vec<(usize, Mutex<&mut Cell>)> = self
             .cells
@@ -300,7 +308,12 @@ impl Live {
             .collect();
         let one = |(number, cell): &(usize, Mutex<&mut Cell>)| {
             let mut cell = cell.lock().unwrap_or_else(PoisonError::into_inner);
-            Ok((*number, cell.pass(&trains[*number], gravity)?))
+            let mut all = Passed { added: 0.0, stiffness: cell.stiffness };
+            for part in trains[*number].parts(load, computed[*number] as u64) {
+                let passed = cell.pass(part, gravity)?;
+                all = Passed { added: all.added + passed.added, stiffness: passed.stiffness };
+            }
+            Ok((*number, all))
         };
         let failed =
             |error: rayon::ThreadPoolBuildError| NodeError::Other { node: "cells".into(), why: error.to_string() };
@@ -357,11 +370,35 @@ fn loads_of_seats(node: &CellsNode, load: &Load<'_>) -> Result<Vec<Option<f64>>,
     Ok(node.seats.iter().enumerate().map(of_seat).collect())
 }
 
-fn forces_of_cells(node: &CellsNode, plans: &[CellPlan], load: &Load<'_>) -> Result<Vec<TrainForces>, NodeError> {
+/// Forces of the trains of a load on a cell.
+struct Trains {
+    among: TrainForces,
+    first: Option<TrainForces>,
+    last: Option<TrainForces>,
+}
+
+impl Trains {
+    /// The parts of a train by its number in the load. With no train ahead, the first train has only its front half: its
+    /// rear half comes together with the front half of the next one. With no train behind, the rear half of the last
+    /// train comes at the end.
+    fn parts(&self, load: &Load<'_>, number: u64) -> impl Iterator<Item = &TrainForces> {
+        let first = self.first.as_ref().filter(|_| number == 0 && !load.joined.ahead);
+        let last = self.last.as_ref().filter(|_| number + 1 == load.trains && !load.joined.behind);
+        [Some(first.unwrap_or(&self.among)), last].into_iter().flatten()
+    }
+}
+
+fn forces_of_cells(node: &CellsNode, plans: &[CellPlan], load: &Load<'_>) -> Result<Vec<Trains>, NodeError> {
     let forces = load.passage.forces.as_ref().ok_or_else(no_forces)?;
     let of_cell = |plan: &CellPlan| {
         let seats: Vec<usize> = plan.sleepers.iter().map(|sleeper| sleeper.seat).collect();
-        TrainForces::new(forces, &seats, plan.middle, node.headway_time).ok_or_else(no_forces)
+        let alone = || Some((TrainForces::new(forces, &seats, plan.middle, None)?, None, None));
+        let following = |headway| {
+            let FollowingTrains { among, first, last } = FollowingTrains::new(forces, &seats, plan.middle, headway)?;
+            Some((among, Some(first), last))
+        };
+        let (among, first, last) = node.headway_time.map_or_else(alone, following).ok_or_else(no_forces)?;
+        Ok(Trains { among, first, last })
     };
     plans.iter().map(of_cell).collect()
 }

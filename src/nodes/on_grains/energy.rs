@@ -75,7 +75,7 @@ impl GrainGround<'_> {
     pub fn energy_of(&self, load: &Load<'_>, tell: &mut Telling<'_>) -> Result<PassageEnergy, NodeError> {
         let mut coupled = self.live_at_rest()?.coupled.clone();
         let none = || NodeError::Other { node: "grains".into(), why: "a passage brings no wheel forces".into() };
-        let wheels = WheelRun::new(load.passage.wheels.as_ref().ok_or_else(none)?, 1, 0.0);
+        let wheels = WheelRun::alone(load.passage.wheels.as_ref().ok_or_else(none)?);
         let [left, right] = self.parts().ends();
         let [begin, end] = wheels.within([left - REACH, right + REACH]).ok_or_else(none)?;
         coupled.watch_energy();

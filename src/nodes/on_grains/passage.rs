@@ -151,8 +151,8 @@ impl Live {
         // trains that follow each other closely are one passage; others pass one by one, and the track comes to rest
         // between them
         let passages: Vec<WheelRun<'_>> = match parts.grains.headway {
-            Some(distance) => vec![WheelRun::new(wheels, load.trains, distance / wheels.speed)],
-            None => (0..load.trains).map(|_| WheelRun::new(wheels, 1, 0.0)).collect(),
+            Some(distance) => vec![WheelRun::new(wheels, load.trains, distance / wheels.speed, load.joined)],
+            None => (0..load.trains).map(|_| WheelRun::alone(wheels)).collect(),
         };
         let (done, all) = (self.block().passages, passages.len() as u64);
         for (number, passage) in (0..).zip(&passages).skip(done as usize) {

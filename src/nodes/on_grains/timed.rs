@@ -56,7 +56,7 @@ impl Live {
         let none = || NodeError::Other { node: "grains".into(), why: "a passage brings no wheel forces".into() };
         let histories = load.passage.wheels.as_ref().ok_or_else(none)?;
         let axles = load.passage.peaks.iter().map(Vec::len).max().unwrap_or(1) as f64;
-        let run = WheelRun::new(histories, 1, 0.0);
+        let run = WheelRun::alone(histories);
         let [left, right] = parts.ends();
         let Some([begin, _]) = run.within([left, right]) else { return Err(none()) };
         let Some([first, last]) = run.within([left - REACH, right + REACH]) else { return Err(none()) };
