@@ -94,9 +94,18 @@ fn a_cell_of_several_bays_is_loaded_by_its_neighbours() {
             let middle = cell.seat();
             for (bay, sleeper) in cell.sleepers.iter().enumerate() {
                 assert!(sleeper.seat.abs_diff(middle) <= 1 && (bay != cell.middle || sleeper.seat == middle));
-                assert!((sleeper.place[0] - 0.6 * (bay as f64 + 0.5)).abs() < 1e-9);
+                assert!((sleeper.place[0] - 0.6 * bay as f64).abs() < 1e-9, "as in the whole bed");
             }
         }
+    }
+    let whole = graph(&SCENE.replace("substructure = cells", "substructure = full, window = -3 .. 1.2 m"));
+    let grains = whole.nodes.iter().find_map(|node| match &node.model {
+        Model::Grains(grains) => Some(grains),
+        _ => None,
+    });
+    for sleeper in grains.expect("grains").stretches.iter().flat_map(|stretch| &stretch.sleepers) {
+        let bays = sleeper.place[0] / 0.6;
+        assert!((bays - bays.round()).abs() < 1e-6, "{bays}");
     }
 }
 

@@ -5,8 +5,8 @@ use super::exchange::Exchange;
 use super::machine::RunError;
 use crate::graph::{Block, Blocks, Clock, Control, Runner, TrackNode};
 use crate::nodes::{
-    CheckingCells, Following, Forces, Joined, Load, NodeError, PassageOutcome, StandingForces, Substructure, Superstructure,
-    TrackSystem,
+    CheckingCells, Following, Forces, Joined, Load, NodeError, PassageOutcome, StandingForces, Substructure,
+    Superstructure, TrackSystem,
 };
 use crate::solvers::settlement::Peak;
 use crate::solvers::track::Direction::{Backward, Forward};

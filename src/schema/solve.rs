@@ -233,7 +233,7 @@ pub(super) const SOLVE: Kind = Kind {
         ),
         default(
             "tolerance",
-            number("%", 0.1, 50.0),
+            number("%", 0.1, 100.0),
             "5 %",
             "error of settlement / largest settlement that the planner may make. By a law: blocks, steps and elements that the scene does not state follow from it, if it is stated; `auto` with a `budget`: the cheapest model of the ground within it; `zone`: sleepers get grains if they settle otherwise than the far field by more than this share of the largest settlement; `cells`, 10 % if none is stated: alike sleepers share a cell if their settlements differ by at most twice this share, and a cell leaves out trains if the error is below this share of its settlement",
         ),

@@ -30,8 +30,8 @@ pub struct Following {
 }
 
 impl TrainForces {
-    /// The forces at these seats of one train: of a train among others that follow each other every `headway` (s), or of
-    /// a train alone.
+    /// The forces at these seats of one train: of a train among others that follow each other every `headway` (s), or
+    /// of a train alone.
     pub fn new(forces: &SeatForces, seats: &[usize], middle: usize, headway: Option<f64>) -> Option<TrainForces> {
         let histories = histories(forces, seats)?;
         match headway {

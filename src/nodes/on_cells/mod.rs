@@ -378,9 +378,9 @@ struct Trains {
 }
 
 impl Trains {
-    /// The parts of a train by its number in the load. With no train ahead, the first train has only its front half: its
-    /// rear half comes together with the front half of the next one. With no train behind, the rear half of the last
-    /// train comes at the end.
+    /// The parts of a train by its number in the load. With no train ahead, the first train has only its front half:
+    /// its rear half comes together with the front half of the next one. With no train behind, the rear half of the
+    /// last train comes at the end.
     fn parts(&self, load: &Load<'_>, number: u64) -> impl Iterator<Item = &TrainForces> {
         let first = self.first.as_ref().filter(|_| number == 0 && !load.joined.ahead);
         let last = self.last.as_ref().filter(|_| number + 1 == load.trains && !load.joined.behind);

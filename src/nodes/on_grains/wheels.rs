@@ -49,8 +49,9 @@ impl<'a> WheelRun<'a> {
     /// Start and end of the time in which a wheel is between two places (m), s; `None` if no wheel ever is.
     pub fn within(&self, [left, right]: [f64; 2]) -> Option<[f64; 2]> {
         let inside = |(wheels, start): &(Range<usize>, f64)| {
-            let is_inside =
-                |at: &usize| self.histories.instant(*at)[wheels.clone()].iter().any(|(x, _)| (left..=right).contains(x));
+            let is_inside = |at: &usize| {
+                self.histories.instant(*at)[wheels.clone()].iter().any(|(x, _)| (left..=right).contains(x))
+            };
             let first = (0..self.histories.instants()).find(is_inside)?;
             let last = (0..self.histories.instants()).rfind(is_inside)?;
             Some([first, last].map(|at| start + at as f64 * self.histories.interval))
