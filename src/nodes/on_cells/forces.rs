@@ -7,6 +7,8 @@ use serde::Serialize;
 const MARGIN: f64 = 0.02;
 /// Smallest difference from the force at rest that counts, as a share of the largest force.
 const DIFFERS: f64 = 0.02;
+/// Share of the largest force that a train adds, up to which a force is small.
+const SMALL: f64 = 0.25;
 /// Share of the largest force of a train that both of its halves reach.
 const HALF: f64 = 0.5;
 
@@ -102,8 +104,8 @@ fn span(forces: &SeatForces, histories: &[&[f64]], [first, last]: [usize; 2]) ->
 }
 
 /// A train among others. Each train adds its force beyond the force at rest; this is exact for a track that never
-/// lifts. It begins and ends where the force on the sleeper in the middle is least; the number of this value within a
-/// period comes with it.
+/// lifts. It begins and ends where the force on the sleeper in the middle is [`least`]; the number of this value within
+/// a period comes with it.
 fn among(forces: &SeatForces, histories: &[&[f64]], middle: usize, headway: f64) -> (usize, TrainForces) {
     let period = period(forces, headway);
     let folded = |history: &&[f64]| {
@@ -113,13 +115,26 @@ fn among(forces: &SeatForces, histories: &[&[f64]], middle: usize, headway: f64)
         sum.into_iter().map(|force| force.max(0.0)).collect()
     };
     let mut sums: Vec<Vec<f64>> = histories.iter().map(folded).collect();
-    let least = sums[middle].iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(at, _)| at);
+    let least = least(&sums[middle], histories[middle][0]);
     for sum in &mut sums {
         sum.rotate_left(least);
         sum.push(sum[0]);
     }
     // a headway is not a whole number of intervals: the interval of the values is scaled to fit
     (least, TrainForces { interval: headway / period as f64, sleepers: sums })
+}
+
+/// Number of the least force of a period, in its longest stretch of small forces. Where trains run far apart this is
+/// the stretch between two of them, also if the rail lifts the sleeper between two bogies.
+fn least(forces: &[f64], rest: f64) -> usize {
+    let most = forces.iter().fold(rest, |most: f64, force| most.max(*force));
+    let small = |at: usize| forces[at % forces.len()] - rest <= SMALL * (most - rest);
+    // a stretch may begin in one period and end in the next
+    let ends = |at: usize| (at..at + forces.len()).find(|at| !small(*at)).unwrap_or(at + forces.len());
+    let stretches = (0..forces.len()).filter(|at| small(*at) && !small(at + forces.len() - 1)).map(|at| at..ends(at));
+    let longest = stretches.max_by(|a, b| a.len().cmp(&b.len()).then(b.start.cmp(&a.start))).unwrap_or(0..forces.len());
+    let force = |at: &usize| forces[at % forces.len()];
+    longest.min_by(|a, b| force(a).total_cmp(&force(b))).unwrap_or(0) % forces.len()
 }
 
 /// Where a train among others begins in the history of one train: the last of these places with at least
