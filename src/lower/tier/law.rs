@@ -94,8 +94,8 @@ fn of_law(scenario: &Scenario) -> ExpectedError {
     let stated = laws.iter().map(|law| Some((law.error?, law.name.as_str()))).collect::<Option<Vec<_>>>();
     if let Some((error, name)) = stated.and_then(|all| all.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))) {
         let evidence = format!(
-            "law `{name}` states an error of {} against the cells to which it was fitted, and cells settle by up to {} \
-             less than a whole bed",
+            "law `{name}` states an error of {} against the cells to which it was fitted, and cells differ by up to {} \
+             from a whole bed",
             percent(error),
             percent(OF_CELLS)
         );
