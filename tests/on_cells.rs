@@ -31,6 +31,8 @@ fn cells(graph: &Graph) -> &CellsNode {
 struct Heard {
     /// Settlement of every seat after each block, m.
     settlements: Vec<Vec<f64>>,
+    /// Axles and unevenness of each block.
+    blocks: Vec<(u64, f64)>,
     /// Stiffness of every support at recorded counts, N/m.
     stiffness: Vec<Vec<f64>>,
     /// Where to stop: at which of the moments at which a state may be kept.
@@ -45,7 +47,10 @@ impl Listener for Heard {
             Event::Rest { state, .. } => {
                 self.stiffness.push(state.seats.iter().map(|seat| seat.support_stiffness).collect());
             }
-            Event::Block { block: Some(_), after, .. } => self.settlements.push(after.to_vec()),
+            Event::Block { block: Some((block, measured)), after, .. } => {
+                self.settlements.push(after.to_vec());
+                self.blocks.push((block.axles, measured.unevenness));
+            }
             Event::Between(between) => {
                 if self.stop_at == Some(self.moments) {
                     self.kept = Some(between.checkpoint().unwrap());
@@ -168,6 +173,31 @@ fn cells_settle_by_less_and_less_and_a_run_that_was_stopped_ends_with_the_same_b
         let kept = serde_json::to_string(&begun.kept.expect("stopped")).unwrap();
         let mut resumed = Heard::default();
         run(&graph, folder.path(), 1, &mut resumed, Some(serde_json::from_str(&kept).unwrap()));
+        assert_eq!([begun.settlements, resumed.settlements].concat(), whole.settlements, "{stop}");
+    }
+}
+
+#[test]
+fn a_block_ends_before_sleepers_settle_too_unevenly_for_its_forces() {
+    let folder = tempfile::tempdir().unwrap();
+    // one sleeper on glued grains between others that settle by millimetres, and one block for all trains
+    let glued = "granular glued : stone {
+  bond = { stiffness = 13 MN/m per contact, tensile_strength = 1 kN, shear_strength = 1 kN }, youngs_modulus = 250 MPa
+}
+stretch one { over = -9 .. -9 sleepers, layers = [glued: 200 mm, clay: rest] }
+track line {";
+    let scene = SCENE.replace("track line {", glued).replace("transitions =", "stretches = [one], transitions =");
+    let scene = scene.replace("update_every = 8 axles", "update_every = 40 axles");
+    let whole = heard(&scene, folder.path());
+    assert_eq!(whole.blocks.iter().map(|(axles, _)| axles).sum::<u64>(), 40);
+    assert!(whole.blocks[0].0 < 20 && whole.blocks.len() < 10, "shorter at first, then longer: {:?}", whole.blocks);
+    let too_long = |(axles, unevenness): &&(u64, f64)| *axles > 4 && *unevenness > 0.5;
+    assert_eq!(whole.blocks.iter().find(too_long), None, "only a single train may settle more: {:?}", whole.blocks);
+    for stop in [1, 3] {
+        let mut begun = Heard { stop_at: Some(stop), ..Heard::default() };
+        run(&graph(&scene), folder.path(), 1, &mut begun, None);
+        let mut resumed = Heard::default();
+        run(&graph(&scene), folder.path(), 1, &mut resumed, begun.kept);
         assert_eq!([begun.settlements, resumed.settlements].concat(), whole.settlements, "{stop}");
     }
 }

@@ -312,8 +312,9 @@ impl Run<'_, '_> {
     /// Estimated number of blocks from an axle count to the end.
     fn blocks_left(&self, axles: u64, last: u64) -> u64 {
         let left = self.pair.blocks.total - axles;
+        let even = self.pair.control.even.map_or(u64::MAX, |trains| trains * self.pair.blocks.train.axles());
         match self.pair.blocks.update {
-            Update::Fixed { axles } => left.div_ceil(axles.max(1)),
+            Update::Fixed { axles } => left.div_ceil(axles.min(even).max(1)),
             // blocks grow with the axles so far, or keep their length if that is not so
             Update::Geometric { .. } | Update::Adaptive { .. } => {
                 let growth = (last as f64 / axles as f64).min(1.0);

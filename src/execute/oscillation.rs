@@ -41,6 +41,12 @@ pub(super) fn sawtooth(runs: &[Range<usize>], settled: &[f64]) -> f64 {
     runs.iter().map(of_run).fold(0.0, f64::max) / most
 }
 
+/// Largest settlement of a seat beside the mean of its two neighbours, along each of `runs`, runs of neighbouring seats
+/// that can settle; in the unit of the settlement.
+pub(super) fn beside_neighbours(runs: &[Range<usize>], settled: &[f64]) -> f64 {
+    runs.iter().map(|run| largest(&bends(&settled[run.clone()])) / 2.0).fold(0.0, f64::max)
+}
+
 /// Second differences in a row that make a sawtooth.
 const ALTERNATIONS: usize = 5;
 
@@ -85,5 +91,15 @@ mod tests {
         assert_eq!(along(&edge), 0.0, "the edge of a transition");
         assert_eq!(along(&[0.0; 30]), 0.0);
         assert_eq!(sawtooth(&[0..2, 2..4], &tooth(2e-4)), 0.0, "too few neighbours");
+    }
+
+    #[test]
+    fn a_seat_settles_beside_its_neighbours() {
+        let mut settled = [2e-3; 6];
+        settled[5] = 0.0;
+        assert_eq!(beside_neighbours(&[0..5], &settled), 0.0, "even up to the slab");
+        settled[2] = 7e-3;
+        assert!((beside_neighbours(&[0..5], &settled) - 5e-3).abs() < 1e-12);
+        assert_eq!(beside_neighbours(&[0..2, 2..4], &settled), 0.0, "too few neighbours");
     }
 }

@@ -5,7 +5,7 @@ use super::exchange::Exchange;
 use super::machine::RunError;
 use crate::graph::{Block, Blocks, Clock, Control, Runner, TrackNode};
 use crate::nodes::{
-    CheckingCells, Following, Forces, Joined, Load, NodeError, PassageOutcome, StandingForces, Substructure,
+    CheckingCells, Even, Following, Forces, Joined, Load, NodeError, PassageOutcome, StandingForces, Substructure,
     Superstructure, TrackSystem,
 };
 use crate::solvers::settlement::Peak;
@@ -154,11 +154,40 @@ impl Pair<'_> {
     /// does not change.
     pub fn advance(&mut self, axles: u64, loads: &[Load<'_>], follow: &mut Following<'_>) -> Result<(), RunError> {
         let loads = &joined(self.blocks, axles, loads);
+        self.passing(axles, |ground| ground.advance_and_follow(loads, follow))?;
+        self.check(axles, loads, follow)
+    }
+
+    /// The same for trains of one load, as long as the settlement of the seats is even. Returns the number of trains
+    /// that have passed.
+    pub fn advance_while(
+        &mut self,
+        axles: u64,
+        load: &Load<'_>,
+        even: &Even<'_>,
+        follow: &mut Following<'_>,
+    ) -> Result<u64, RunError> {
+        let loads = joined(self.blocks, axles, std::slice::from_ref(load));
+        let trains = self.passing(axles, |ground| ground.advance_while(&loads[0], even, follow))?;
+        self.check(axles, &[Load { trains, ..loads[0] }], follow)?;
+        Ok(trains)
+    }
+
+    /// Lets the ground do something after so many axles. If it fails, its state does not change.
+    fn passing<T>(
+        &mut self,
+        axles: u64,
+        step: impl FnOnce(&mut dyn Substructure) -> Result<T, NodeError>,
+    ) -> Result<T, RunError> {
         let mark = self.ground.mark();
-        if let Err(cause) = self.ground.advance_and_follow(loads, follow) {
+        step(self.ground.as_mut()).map_err(|cause| {
             self.ground.roll_back(mark);
-            return Err(RunError::node(Clock::Axles(axles), cause));
-        }
+            RunError::node(Clock::Axles(axles), cause)
+        })
+    }
+
+    /// Lets the cells that check the ground do the same, and lets the track stand on what the ground answers.
+    fn check(&mut self, axles: u64, loads: &[Load<'_>], follow: &mut Following<'_>) -> Result<(), RunError> {
         if let Some(check) = &mut self.check {
             check.advance(loads, follow).map_err(|cause| RunError::node(Clock::Axles(axles), cause))?;
         }

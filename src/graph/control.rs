@@ -15,7 +15,17 @@ pub struct Control {
     pub aim: Option<f64>,
     /// Fixed and geometric: largest number of trains in the next block, after a block that had to be shortened.
     pub limit: Option<u64>,
+    /// Fixed and geometric: number of trains in which sleepers settle so evenly that the forces of a block stay; `None`
+    /// before the first block, and where sleepers settle evenly.
+    #[serde(default)]
+    pub even: Option<u64>,
 }
+
+/// Unevenness above which forces change within a block by more than about half: a sleeper settles beside its neighbours
+/// by half of the displacement of the rail under a train.
+pub const UNEVEN: f64 = 0.5;
+/// Unevenness that the next block aims at. The rate of a sleeper can double until then.
+const LEVEL: f64 = 0.25;
 
 /// Next aim / largest aim that the last error allows.
 const SAFETY: f64 = 0.9;
@@ -48,12 +58,18 @@ impl Control {
 
     /// Largest number of trains in a block of a fixed or geometric policy.
     pub fn bounded(&self, wanted: u64) -> u64 {
-        self.limit.map_or(wanted, |limit| wanted.min(limit))
+        [self.limit, self.even].into_iter().flatten().fold(wanted, u64::min)
     }
 
     /// A block of `trains` trains must be repeated in halves.
     pub fn shorten(&mut self, trains: u64) {
         self.limit = Some(trains.div_ceil(2));
+    }
+
+    /// A block of `trains` trains settled the sleepers with this unevenness. In the next one they are expected to settle
+    /// at the same rates.
+    pub fn level(&mut self, trains: u64, unevenness: f64) {
+        self.even = (unevenness > 0.0).then(|| ((trains as f64 * LEVEL / unevenness) as u64).max(1));
     }
 
     /// A block of `trains` trains was accepted, and `wanted` trains were asked for: the next block may be twice as
@@ -159,5 +175,18 @@ mod tests {
         assert_eq!(control.limit, None);
         control.shorten(3);
         assert_eq!(control.bounded(50), 2);
+    }
+
+    #[test]
+    fn blocks_are_shorter_while_sleepers_settle_unevenly() {
+        let mut control = Control::default();
+        control.level(5, 0.0);
+        assert_eq!(control.bounded(50), 50, "even");
+        control.level(20, 2.0);
+        assert_eq!(control.bounded(50), 2, "an eighth of the block");
+        control.level(2, 0.05);
+        assert_eq!(control.bounded(50), 10, "longer again");
+        control.level(1, 40.0);
+        assert_eq!(control.bounded(50), 1, "one train at least");
     }
 }

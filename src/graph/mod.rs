@@ -22,7 +22,7 @@ mod train;
 
 pub use blocks::Due;
 pub use cells::{CellPlan, CellsNode, SeatOnCell, seats_alike};
-pub use control::Control;
+pub use control::{Control, UNEVEN};
 pub use decision::{Cost, Decision, ExpectedError, PassageWork, Rejected, TestWork, Work};
 pub use grains::{
     ActuatorsNode, BedError, BedNode, BedPlan, BedRecipe, GrainStretch, GrainsNode, SensorNode, SensorVolume,

@@ -149,6 +149,9 @@ impl std::iter::Sum for Bonds {
 pub struct Mark(pub Box<dyn Any + Send>);
 
 /// The ground below the sleepers: forces in, responses and settlement out.
+/// Whether the settlement of every seat, m, after so many trains of a block is even enough to go on with its forces.
+pub type Even<'a> = dyn Fn(&[f64], u64) -> bool + 'a;
+
 pub trait Substructure: Send + Sync {
     /// Builds the parts that take long to build; `tell` gets the progress. It is not called if the state is restored.
     fn prepare(&mut self, _tell: &mut Telling<'_>) -> Result<(), NodeError> {
@@ -180,6 +183,11 @@ pub trait Substructure: Send + Sync {
     /// Settlement of every seat (m) that these trains would leave. Changes nothing.
     fn predict(&self, loads: &[Load<'_>]) -> Result<Vec<f64>, NodeError>;
 
+    /// Whether the settlement of a block is known before it: by [`Substructure::predict`], exactly.
+    fn foresees(&self) -> bool {
+        true
+    }
+
     /// Lets trains pass. After an error the state is that of the last mark only once it is rolled back.
     fn advance(&mut self, loads: &[Load<'_>]) -> Result<(), NodeError>;
 
@@ -187,6 +195,19 @@ pub trait Substructure: Send + Sync {
     /// same trains continue from there.
     fn advance_and_follow(&mut self, loads: &[Load<'_>], _follow: &mut Following<'_>) -> Result<(), NodeError> {
         self.advance(loads)
+    }
+
+    /// The same for trains of one load, until the settlement of the seats (m) after so many of them is no longer `even`;
+    /// at least one passes. Returns the number of trains that have passed. A substructure that cannot stop between two
+    /// trains lets all of them pass.
+    fn advance_while(
+        &mut self,
+        load: &Load<'_>,
+        _even: &Even<'_>,
+        follow: &mut Following<'_>,
+    ) -> Result<u64, NodeError> {
+        self.advance_and_follow(std::slice::from_ref(load), follow)?;
+        Ok(load.trains)
     }
 
     /// Records the first passage of the next block, as a passage after so many axles, if volumes are recorded at that

@@ -2,7 +2,6 @@
 //! checkpoint; histories go into their own file as soon as they exist.
 
 use super::kept_beds::{BedPieces, KeptBeds};
-use super::tables::beside_neighbours;
 use super::under_track::Part;
 use super::{
     BedSummary, BedTest, BedTests, BlockRow, CheckRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Run,
@@ -610,10 +609,7 @@ impl RunRecorder<'_> {
         let block = block.map(|(block, _)| block);
         let largest = |of: fn(&PassageOutcome) -> f64| passages.iter().map(|p| of(p)).fold(f64::NEG_INFINITY, f64::max);
         let seats = |p: &PassageOutcome, of: fn(&SeatOutcome) -> f64| p.seats.iter().map(of).fold(0.0, f64::max);
-        let ballasted: Vec<bool> = self.track().seats.iter().map(|seat| seat.is_ballasted()).collect();
         let displacement = largest(|p| p.max_rail_displacement);
-        let uneven = beside_neighbours(before, after, &ballasted);
-        let is_adaptive = self.graph.blocks().is_some_and(|blocks| blocks.adaptive().is_some());
         let steps = before.iter().zip(after).map(|(b, a)| a - b).fold(0.0, f64::max);
         self.tables.blocks.push(BlockRow {
             axles,
@@ -627,7 +623,7 @@ impl RunRecorder<'_> {
             error_m: measured.error,
             overshoot: measured.overshoot.unwrap_or(0.0),
             sawtooth: measured.sawtooth,
-            unevenness: if displacement > 0.0 && !is_adaptive { uneven / displacement } else { 0.0 },
+            unevenness: measured.unevenness,
             rejected: measured.rejected,
             overshot: measured.overshot,
             passages: measured.passages,

@@ -1,5 +1,6 @@
 //! The rows of a run's tables: one struct a file, one field a column. Values are SI.
 
+use crate::graph::UNEVEN;
 use crate::nodes::Bonds;
 use crate::units::number;
 use serde::de::DeserializeOwned;
@@ -200,8 +201,6 @@ pub struct BlockRow {
 
 /// Above this amplitude a sawtooth is larger than unequal sleeper loads can cause.
 const SAWTOOTH: f64 = 0.1;
-/// Above this unevenness forces change within the block by more than about half.
-const UNEVEN: f64 = 0.5;
 
 impl BlockRow {
     /// Bonds of glued grains after the block.
@@ -229,7 +228,8 @@ impl BlockRow {
         let uneven = uneven.filter(|b| b.unevenness > UNEVEN).map(|b| {
             format!(
                 "in the {} axles after {} axles a sleeper settled beside its neighbours by {} times the displacement of \
-                 the rail under a train, so its load changed within this block, and the block had the load of its start",
+                 the rail under a train, so its load changed within this block, and the block had the load of its start; the \
+                 blocks after it are shorter",
                 b.block_axles,
                 b.axles,
                 number((10.0 * b.unevenness).round() / 10.0)
@@ -265,15 +265,6 @@ impl Row for BlockRow {
     ];
 }
 
-/// Largest settlement of a block at a seat beside the mean of both neighbours, m. Seats that are not on sleepers, and
-/// their neighbours, do not count: there the settlement of the track has a step.
-pub(super) fn beside_neighbours(before: &[f64], after: &[f64], is_ballasted: &[bool]) -> f64 {
-    let added: Vec<f64> = before.iter().zip(after).map(|(before, after)| after - before).collect();
-    let beside = |at: &[f64]| (at[1] - (at[0] + at[2]) / 2.0).abs();
-    let three = added.windows(3).zip(is_ballasted.windows(3));
-    three.filter(|(_, ballasted)| ballasted.iter().all(|is| *is)).map(|(at, _)| beside(at)).fold(0.0, f64::max)
-}
-
 /// One value of a history (`histories.parquet`), in long format. Fields along the track that belong to no moment of
 /// a passage (`rail_level`, all of a static check) have `time_s` 0.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -298,13 +289,6 @@ mod tests {
 
     #[test]
     fn a_sleeper_that_settles_beside_its_neighbours_is_told() {
-        let (before, mut after) = ([1e-3; 6], [3e-3; 6]);
-        let ballasted = [true, true, true, true, true, false];
-        after[5] = 1e-3;
-        assert_eq!(beside_neighbours(&before, &after, &ballasted), 0.0, "even up to the slab");
-        after[2] = 8e-3;
-        assert!((beside_neighbours(&before, &after, &ballasted) - 5e-3).abs() < 1e-12);
-
         let mut blocks = example::transition().blocks;
         assert_eq!(BlockRow::overshoot(&blocks), None);
         (blocks[3].unevenness, blocks[4].unevenness) = (3.26, 0.7);

@@ -92,7 +92,8 @@ impl Book {
 }
 
 /// The law of the cells on each bed, as far as it is known.
-pub(super) fn laws(beds: usize, plans: &[CellPlan], books: &[Book]) -> Vec<Option<Hardening>> {
+pub(super) fn laws(plans: &[CellPlan], books: &[Book]) -> Vec<Option<Hardening>> {
+    let beds = plans.iter().map(|plan| plan.bed + 1).max().unwrap_or(0);
     let of_bed = |bed: usize| {
         let cells = plans.iter().zip(books).filter(|(plan, _)| plan.bed == bed);
         let runs: Vec<&[Computed]> = cells.flat_map(|(_, book)| book.computed.iter().map(Vec::as_slice)).collect();

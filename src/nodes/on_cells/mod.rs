@@ -15,7 +15,7 @@ mod stored;
 
 use super::on_grains::{Following, Stage, Telling, going_on, tell_stage_and_state};
 use super::turns;
-use super::{Bonds, Forces, Load, Mark, NodeError, Substructure};
+use super::{Bonds, Even, Forces, Load, Mark, NodeError, Substructure};
 use crate::graph::{CellPlan, CellsNode, Responses, SeatOnCell};
 use crate::store::{Beds, recipe_hash};
 use book::{Book, laws};
@@ -27,7 +27,7 @@ use hardening::Jump;
 use layout::Layout;
 use serde::{Deserialize, Serialize};
 pub use specimen::{Specimen, StepOfCell};
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::sync::{Mutex, PoisonError};
 
 /// Version: increased when the same cells are built in another way, or stored in another form.
@@ -78,6 +78,8 @@ struct Underway {
     runs: usize,
     /// Trains of the run under way that each cell has computed; empty before its first one.
     computed: Vec<usize>,
+    /// Trains with which the run ends, if it ends early.
+    until: Option<u64>,
 }
 
 impl<'a> CellGround<'a> {
@@ -91,6 +93,14 @@ impl<'a> CellGround<'a> {
         let Some(live) = &self.live else { return };
         let seats = book::supports(self.parts.cells, &live.layout, live.told());
         self.responses = Responses { revision: live.revision, seats };
+    }
+
+    fn end_of_block(&mut self) {
+        if let Some(live) = &mut self.live {
+            live.underway = None;
+            live.revision += 1;
+        }
+        self.answer();
     }
 
     /// The settlement of each cell.
@@ -135,6 +145,10 @@ impl Substructure for CellGround<'_> {
         Ok(book::settlement(self.parts.cells, &live.layout, |cell| told[cell].settled + trains * told[cell].rate))
     }
 
+    fn foresees(&self) -> bool {
+        false
+    }
+
     fn advance(&mut self, loads: &[Load<'_>]) -> Result<(), NodeError> {
         self.advance_and_follow(loads, &mut |_| ControlFlow::Continue(()))
     }
@@ -144,12 +158,22 @@ impl Substructure for CellGround<'_> {
         let live = self.live.as_mut().ok_or(NodeError::NoGround)?;
         let done = live.block().runs;
         for load in loads.iter().skip(done) {
-            live.run(node, load, follow)?;
+            live.run(node, load, &|_, _| true, follow)?;
         }
-        live.underway = None;
-        live.revision += 1;
-        self.answer();
+        self.end_of_block();
         Ok(())
+    }
+
+    fn advance_while(
+        &mut self,
+        load: &Load<'_>,
+        even: &Even<'_>,
+        follow: &mut Following<'_>,
+    ) -> Result<u64, NodeError> {
+        let live = self.live.as_mut().ok_or(NodeError::NoGround)?;
+        let passed = live.run(self.parts.cells, load, even, follow)?;
+        self.end_of_block();
+        Ok(passed)
     }
 
     fn bonds(&self) -> Bonds {
@@ -209,7 +233,12 @@ impl Live {
             self.books.iter_mut().for_each(|book| book.error_added = 0.0);
         }
         let books = &self.books;
-        self.underway.get_or_insert_with(|| Underway { began: books.clone(), runs: 0, computed: Vec::new() })
+        self.underway.get_or_insert_with(|| Underway {
+            began: books.clone(),
+            runs: 0,
+            computed: Vec::new(),
+            until: None,
+        })
     }
 
     /// The values of the cells that other nodes get.
@@ -217,8 +246,15 @@ impl Live {
         self.underway.as_ref().map_or(&self.books, |underway| &underway.began)
     }
 
-    /// Lets the trains of one load pass; goes on with those that are under way.
-    fn run(&mut self, node: &CellsNode, load: &Load<'_>, follow: &mut Following<'_>) -> Result<(), NodeError> {
+    /// Lets the trains of one load pass, as long as the settlement is even; goes on with those that are under way.
+    /// Returns the number of trains that have passed.
+    fn run(
+        &mut self,
+        node: &CellsNode,
+        load: &Load<'_>,
+        even: &Even<'_>,
+        follow: &mut Following<'_>,
+    ) -> Result<u64, NodeError> {
         let begins = self.block().computed.is_empty();
         if begins {
             self.part(node, load)?;
@@ -231,19 +267,47 @@ impl Live {
             }
         }
         loop {
-            let jumps = self.jumps(node, load.trains);
+            let count = self.block().until.unwrap_or(load.trains);
+            let jumps = self.jumps(node, count);
             let due: Vec<usize> = (0..jumps.len()).filter(|cell| jumps[*cell].is_none()).collect();
             if due.is_empty() {
-                self.end_of_run(jumps.into_iter().flatten().collect(), load.trains);
-                return Ok(());
+                // what the laws leave out may be uneven too
+                self.stop_early(self.trains_computed()..count, node, even);
+                if self.block().until.is_some_and(|until| until < count) {
+                    continue;
+                }
+                self.end_of_run(jumps.into_iter().flatten().collect(), count);
+                return Ok(count);
             }
-            let share = self.share(&jumps, load.trains);
+            let share = self.share(&jumps, count);
             tell_stage_and_state((Stage::Passage, share), &|| self.save(), follow)?;
             for (cell, passed) in self.pass(&due, &trains, load, node.gravity)? {
                 self.books[cell].note(&passed);
                 self.block().computed[cell] += 1;
             }
+            let computed = self.trains_computed();
+            self.stop_early(computed..count.min(computed + 1), node, even);
         }
+    }
+
+    /// Trains of the run under way that are computed, in the cell that has computed most.
+    fn trains_computed(&self) -> u64 {
+        let computed = self.underway.as_ref().and_then(|underway| underway.computed.iter().max());
+        computed.map_or(0, |most| *most as u64)
+    }
+
+    /// Lets the run under way end with the first of these numbers of trains after which the settlement is not even.
+    fn stop_early(&mut self, mut trains: Range<u64>, node: &CellsNode, even: &Even<'_>) {
+        let uneven = |trains: &u64| {
+            let added: Option<Vec<Jump>> = self.by_law(*trains).into_iter().collect();
+            let after = |added: Vec<Jump>| {
+                book::settlement(node, &self.layout, |cell| self.books[cell].settled + added[cell].settled)
+            };
+            added.is_some_and(|added| !even(&after(added), *trains))
+        };
+        let until = trains.find(uneven);
+        let block = self.block();
+        block.until = block.until.or(until);
     }
 
     /// Splits cells whose seats get different loads from the trains of one load.
@@ -262,14 +326,8 @@ impl Live {
     /// Each cell computes at least one train: forces have changed since the last run, and this train shows if the law
     /// no longer holds.
     fn jumps(&self, node: &CellsNode, trains: u64) -> Vec<Option<Jump>> {
-        let plans = &self.layout.plans;
-        let laws = laws(node.beds.len(), plans, &self.books);
         let computed = self.underway.as_ref().map_or(&[] as &[usize], |underway| &underway.computed);
-        let jump = |(cell, now): (usize, &usize)| {
-            let law = laws[plans[cell].bed].as_ref();
-            self.books[cell].jump(law, *now, self.passed, trains)
-        };
-        let jumps: Vec<Option<Jump>> = computed.iter().enumerate().map(jump).collect();
+        let jumps = self.by_law(trains);
         let settled = |(book, jump): (&Book, &Option<Jump>)| book.settled + jump.map_or(0.0, |jump| jump.settled);
         let largest =
             self.books.iter().zip(&jumps).map(settled).fold(0.0, |most: f64, settled| most.max(settled.abs()));
@@ -279,6 +337,19 @@ impl Live {
             jump.filter(|jump| *now as u64 >= trains || bears(jump))
         };
         self.books.iter().zip(computed).zip(jumps).map(good).collect()
+    }
+
+    /// Settlement that so many trains of the run under way add to each cell, by what it has computed and by its law;
+    /// `None` without a law for what is left.
+    fn by_law(&self, trains: u64) -> Vec<Option<Jump>> {
+        let plans = &self.layout.plans;
+        let laws = laws(plans, &self.books);
+        let computed = self.underway.as_ref().map_or(&[] as &[usize], |underway| &underway.computed);
+        let jump = |(cell, now): (usize, &usize)| {
+            let law = laws[plans[cell].bed].as_ref();
+            self.books[cell].jump(law, *now, self.passed, trains)
+        };
+        computed.iter().enumerate().map(jump).collect()
     }
 
     /// Share of a run of trains that is done: of a cell that needs further ones, what it has computed.
@@ -331,6 +402,7 @@ impl Live {
         let block = self.block();
         block.runs += 1;
         block.computed.clear();
+        block.until = None;
     }
 }
 

@@ -212,6 +212,10 @@ impl Substructure for GrainGround<'_> {
         Ok(settlement.map(|(seat, s)| s + trains as f64 * rate.get(seat).copied().unwrap_or(0.0)).collect())
     }
 
+    fn foresees(&self) -> bool {
+        false
+    }
+
     fn advance(&mut self, loads: &[Load<'_>]) -> Result<(), NodeError> {
         self.advance_and_follow(loads, &mut |_| ControlFlow::Continue(()))
     }
