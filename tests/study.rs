@@ -159,7 +159,7 @@ fn a_chart_of_grains_is_planned_within_its_time() {
     for same in ["full", "monolithic", "every_20", "zone"] {
         assert!(line(same).is_none(), "{whole}");
     }
-    let (_, told) = dry("20");
+    let (_, told) = dry("10");
     assert!(told.contains("grains from"), "{told}");
 }
 

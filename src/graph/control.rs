@@ -66,8 +66,8 @@ impl Control {
         self.limit = Some(trains.div_ceil(2));
     }
 
-    /// A block of `trains` trains settled the sleepers with this unevenness. In the next one they are expected to settle
-    /// at the same rates.
+    /// A block of `trains` trains settled the sleepers with this unevenness. In the next one they are expected to
+    /// settle at the same rates.
     pub fn level(&mut self, trains: u64, unevenness: f64) {
         self.even = (unevenness > 0.0).then(|| ((trains as f64 * LEVEL / unevenness) as u64).max(1));
     }

@@ -197,9 +197,9 @@ pub trait Substructure: Send + Sync {
         self.advance(loads)
     }
 
-    /// The same for trains of one load, until the settlement of the seats (m) after so many of them is no longer `even`;
-    /// at least one passes. Returns the number of trains that have passed. A substructure that cannot stop between two
-    /// trains lets all of them pass.
+    /// The same for trains of one load, until the settlement of the seats (m) after so many of them is no longer
+    /// `even`; at least one passes. Returns the number of trains that have passed. A substructure that cannot stop
+    /// between two trains lets all of them pass.
     fn advance_while(
         &mut self,
         load: &Load<'_>,

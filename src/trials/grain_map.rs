@@ -67,7 +67,7 @@ pub struct GrainMap {
 
 /// Inertia added / mass of the two maps.
 const ADDED: [f64; 4] = [0.0, 0.005, 0.02, 0.1];
-const HEAVY: [f64; 4] = [0.0, 0.02, 0.2, 1.0];
+const HEAVY: [f64; 4] = [0.0, 0.1, 0.2, 1.0];
 /// Steps over the limit of the network.
 const SHARES: [f64; 7] = [0.7, 0.85, 0.95, 1.05, 1.15, 1.3, 1.5];
 /// Distance from the limit, in share of it, within which theory and a run may disagree.
@@ -263,14 +263,14 @@ mod tests {
         // stiffer by the square of the speed, as a mass on a spring
         let of = |allowed: f64, factor: f64| 100e6 * (1.0 - 1e-3 * factor * factor * (1.0 + allowed));
         let map = map(of);
-        for (allowed, factor) in [(0.02, 1.0), (0.2, 4.0), (1.0, 8.0)] {
+        for (allowed, factor) in [(0.1, 1.0), (0.2, 4.0), (1.0, 8.0)] {
             let [found, theory] =
                 [map.change(allowed, factor), map.change_in_theory(allowed, factor)].map(Option::unwrap);
             assert!((found - theory).abs() < 0.04, "{allowed} {factor}: {found} {theory}");
         }
         assert_eq!(map.change_in_theory(1.0, 16.0), None, "beyond the speeds of the map");
         assert_eq!(map.matters_from(1.0), Some(8.0));
-        assert_eq!(map.matters_from(0.02), None);
+        assert_eq!(map.matters_from(0.1), None);
     }
 
     #[test]

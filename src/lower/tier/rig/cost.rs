@@ -112,7 +112,7 @@ fn cost(seconds: f64, work: TestWork) -> Cost {
 
 /// Time step of grains under a track / sqrt(m / k) of the lightest grain; pebble steps per second on two cores, with
 /// soil and rail (`docs/validation.md`, a track on grains).
-const TRACK_STEP: f64 = 0.36;
+const TRACK_STEP: f64 = 0.48;
 const TRACK_PEBBLE_STEPS: f64 = 16e6;
 /// Time of the stages of building, s.
 const BUILDING: f64 = 0.7;
@@ -162,14 +162,14 @@ const BESIDE_ALONE: f64 = 0.1;
 const BESIDE_EACH: f64 = 0.04;
 /// Pebble steps per second of a cell on one core, and of building it on two (`benches/estimates.py`); time of a train
 /// on a cell that has both cores / on one core.
-const CELL_STEPS: f64 = 18e6;
+const CELL_STEPS: f64 = 15e6;
 const BUILT_STEPS: f64 = 30e6;
 const ON_BOTH_CORES: f64 = 0.6;
 /// Trains that a cell computes: the first trains, and a share of the others that is inversely proportional to the
 /// tolerance, here for 10 %; at least one in each block. 500 axles on the paper's bed, which rises later, took 0.8; on
 /// a tamped bed 0.4 (`docs/validation.md`, cells).
 const FIRST_TRAINS: f64 = 4.0;
-const OTHER_TRAINS: f64 = 0.6;
+const OTHER_TRAINS: f64 = 0.65;
 const OF_TOLERANCE: f64 = 0.1;
 
 /// Trains that a cell computes of a run of so many blocks.
