@@ -191,8 +191,7 @@ track line {";
     let whole = heard(&scene, folder.path());
     assert_eq!(whole.blocks.iter().map(|(axles, _)| axles).sum::<u64>(), 40);
     assert!(whole.blocks[0].0 < 20 && whole.blocks.len() < 10, "shorter at first, then longer: {:?}", whole.blocks);
-    let too_long = |(axles, unevenness): &&(u64, f64)| *axles > 4 && *unevenness > 0.5;
-    assert_eq!(whole.blocks.iter().find(too_long), None, "only a single train may settle more: {:?}", whole.blocks);
+    assert!(whole.blocks.iter().all(|(_, unevenness)| *unevenness <= 0.5), "{:?}", whole.blocks);
     for stop in [1, 3] {
         let mut begun = Heard { stop_at: Some(stop), ..Heard::default() };
         run(&graph(&scene), folder.path(), 1, &mut begun, None);

@@ -21,7 +21,8 @@ pub struct BlockMeasures {
     pub sawtooth: f64,
     /// Largest settlement of the block at a seat beside the mean of its two neighbours, relative to the largest
     /// displacement of the rail under a train: from about 1 a sleeper has lost or gained its load within the block. 0
-    /// for adaptive blocks, whose forces follow the settlement, and where nothing is exchanged.
+    /// for a block of one train, for adaptive blocks, whose forces follow the settlement, and where nothing is
+    /// exchanged.
     pub unevenness: f64,
     /// Longer blocks that were tried from the same start and rejected.
     pub rejected: u64,
@@ -78,10 +79,11 @@ impl Pair<'_> {
             let block = self.advance_evenly(here, &block, &loads, follow)?;
             measured.error += self.ground.error_added();
             let settled = difference(&self.settlement(), &here.settlement);
-            measured.unevenness = unevenness(&self.runs, &loads, &settled);
+            let uneven = unevenness(&self.runs, &loads, &settled);
             if !self.ground.foresees() {
-                self.control.level(block.trains(), measured.unevenness);
+                self.control.level(block.trains(), uneven);
             }
+            measured.unevenness = if block.trains() > 1 { uneven } else { 0.0 };
             return Ok(Done { block, measured, next: Some(next) });
         }
     }

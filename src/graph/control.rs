@@ -15,8 +15,8 @@ pub struct Control {
     pub aim: Option<f64>,
     /// Fixed and geometric: largest number of trains in the next block, after a block that had to be shortened.
     pub limit: Option<u64>,
-    /// Fixed and geometric: number of trains in which sleepers settle so evenly that the forces of a block stay; `None`
-    /// before the first block, and where sleepers settle evenly.
+    /// Fixed and geometric, on grains: largest number of trains in the next block, so that its sleepers settle evenly
+    /// enough for constant forces; `None` before the first block and after one that settled evenly.
     #[serde(default)]
     pub even: Option<u64>,
 }

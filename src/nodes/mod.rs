@@ -148,10 +148,10 @@ impl std::iter::Sum for Bonds {
 /// A state to which a substructure can be rolled back.
 pub struct Mark(pub Box<dyn Any + Send>);
 
-/// The ground below the sleepers: forces in, responses and settlement out.
 /// Whether the settlement of every seat, m, after so many trains of a block is even enough to go on with its forces.
 pub type Even<'a> = dyn Fn(&[f64], u64) -> bool + 'a;
 
+/// The ground below the sleepers: forces in, responses and settlement out.
 pub trait Substructure: Send + Sync {
     /// Builds the parts that take long to build; `tell` gets the progress. It is not called if the state is restored.
     fn prepare(&mut self, _tell: &mut Telling<'_>) -> Result<(), NodeError> {
@@ -183,7 +183,7 @@ pub trait Substructure: Send + Sync {
     /// Settlement of every seat (m) that these trains would leave. Changes nothing.
     fn predict(&self, loads: &[Load<'_>]) -> Result<Vec<f64>, NodeError>;
 
-    /// Whether the settlement of a block is known before it: by [`Substructure::predict`], exactly.
+    /// Whether [`Substructure::predict`] gives exactly the settlement that a block leaves.
     fn foresees(&self) -> bool {
         true
     }

@@ -182,7 +182,7 @@ pub struct BlockRow {
     pub sawtooth: f64,
     /// Largest settlement of the block at a sleeper beside the mean of its two neighbours, as a share of the largest
     /// displacement of the rail under the train: from about 1 the sleeper has lost or gained its load within the block.
-    /// 0 for adaptive blocks, whose forces follow the settlement.
+    /// 0 for a block of one train, and for adaptive blocks, whose forces follow the settlement.
     #[serde(default)]
     pub unevenness: f64,
     /// Longer blocks that were tried and rejected, and the number of rejected blocks that overshot.
@@ -228,8 +228,7 @@ impl BlockRow {
         let uneven = uneven.filter(|b| b.unevenness > UNEVEN).map(|b| {
             format!(
                 "in the {} axles after {} axles a sleeper settled beside its neighbours by {} times the displacement of \
-                 the rail under a train, so its load changed within this block, and the block had the load of its start; the \
-                 blocks after it are shorter",
+                 the rail under a train, so its load changed within this block, and the block had the load of its start",
                 b.block_axles,
                 b.axles,
                 number((10.0 * b.unevenness).round() / 10.0)
