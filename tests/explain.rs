@@ -40,7 +40,7 @@ const MAPS: [(Code, &str); 7] = [
     (Code::L1005, "stability.svg"),
     (Code::E0807, "exchange_transition.svg"),
     (Code::L1006, "exchange_transition.svg"),
-    (Code::L1020, "grains_stability.svg"),
+    (Code::L1020, "grain_inertia.csv"),
     (Code::L1035, "grains_short.svg"),
 ];
 

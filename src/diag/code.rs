@@ -155,7 +155,7 @@ codes! {
     L1017 Warning "car body with an unusual bounce frequency"
     L1018 Warning "bed of few grains between its walls"
     L1019 Warning "sleeper on few grains"
-    L1020 Warning "step of grains above its stability limit"
+    L1020 Warning "step of grains that needs much additional inertia"
     L1021 Warning "grains that overlap too much under their load"
     L1022 Warning "run above its budget"
     L1023 Warning "damper above critical damping"

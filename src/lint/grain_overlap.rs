@@ -18,7 +18,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     for bed in beds(scenario, graph) {
         let (pressure, median) = (bed.pressure(scenario, graph), bed.granular.grading.d(50.0));
         let force = contact_force(median, pressure);
-        let (overlap, _) = approach(&bed.granular.contact, median, force);
+        let overlap = approach(&bed.granular.contact, median, force);
         let share = overlap / (median / 2.0);
         if share <= LARGEST {
             continue;

@@ -90,17 +90,16 @@ pub(super) fn contact_force(size: f64, pressure: f64) -> f64 {
     PI * size * size * pressure / (CONTACTS * SOLID)
 }
 
-/// Approach of two grains of a size, m, under a normal force, N, and the tangent stiffness at this force, N/m.
+/// Approach of two grains of a size, m, under a normal force, N.
 ///
 /// Linear: `F = k d`. Hertz: `F = 4/3 E* sqrt(R*) d^1.5` with `E* = E / 2 (1 - nu^2)` and `R* = R / 2`.
-pub(super) fn approach(contact: &Contact, size: f64, force: f64) -> (f64, f64) {
+pub(super) fn approach(contact: &Contact, size: f64, force: f64) -> f64 {
     match contact {
-        Contact::Linear { stiffness } => (force / **stiffness, **stiffness),
+        Contact::Linear { stiffness } => force / **stiffness,
         Contact::Hertz { youngs_modulus, poisson_ratio } => {
             let modulus = **youngs_modulus / (2.0 * (1.0 - **poisson_ratio * **poisson_ratio));
             let factor = 4.0 / 3.0 * modulus * (size / 4.0).sqrt();
-            let approach = (force / factor).powf(2.0 / 3.0);
-            (approach, 1.5 * factor * approach.sqrt())
+            (force / factor).powf(2.0 / 3.0)
         }
     }
 }

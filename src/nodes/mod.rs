@@ -27,7 +27,7 @@ pub use law::LawGround;
 pub use on_cells::{CellGround, Checked, Parts as CellParts, Passed, Specimen, StepOfCell, TrainForces};
 pub use on_grains::{
     BedUnderTrack, Following, GrainGround, Parted, Parts as GrainParts, PassageEnergy, Riders, Stage, Telling,
-    TimedSteps, Told, VolumeSample,
+    TimedSteps, Told, VolumeSample, mass_for_step,
 };
 pub use outcome::{
     PassageOutcome, RailPlace, RailPoint, Sample, SampledPart, SeatForces, SeatOutcome, Unloaded, UnloadedSeat,

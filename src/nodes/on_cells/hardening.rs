@@ -7,6 +7,9 @@
 //!
 //! A cell that has computed `a` of the `n` trains that have passed is younger than its track, so a train that it
 //! computes as its a-th counts as `kappa (a^-q - n^-q)` less than it does.
+//!
+//! A few trains under a new load have nearly one age, and their scatter alone would give a `kappa` of any size. So
+//! `kappa` has a known size before it is fitted: what a train adds / its `a^-q`, of either sign (ridge regression).
 
 use serde::{Deserialize, Serialize};
 
@@ -73,7 +76,7 @@ impl Hardening {
             return (left == 0.0).then_some(Jump { settled: added, error });
         }
         let of = |exponent: f64| {
-            let line = Line::through(known, exponent);
+            let line = Line::through(known, exponent).held(known, self.scatter);
             let rate = |number: f64| number.powf(-exponent);
             let younger = |(train, n): (&Computed, &f64)| rate(*n) - rate(train.age);
             let lever = computed.iter().zip(&numbers).map(younger).sum::<f64>()
@@ -119,6 +122,17 @@ impl Line {
             products += distance * train.added;
         }
         Line { exponent, rate, added, slope: products / spread, spread }
+    }
+
+    /// The line with its slope held to a standard deviation of what a train adds / its rate, before trains of a scatter
+    /// (m) are seen.
+    fn held(self, trains: &[Computed], scatter: f64) -> Line {
+        let squares = trains.iter().map(|train| train.added * train.added).sum::<f64>() / trains.len() as f64;
+        if squares == 0.0 {
+            return Line { slope: 0.0, ..self };
+        }
+        let spread = self.spread + scatter * scatter * self.rate * self.rate / squares;
+        Line { slope: self.slope * self.spread / spread, spread, ..self }
     }
 
     /// Sum of squared differences between trains and the line.
@@ -181,6 +195,23 @@ mod tests {
         // if no train is left, only the age of the cell is open: 21 trains instead of 101
         let jump = law.settled(&known, 2, 100, 2).unwrap();
         assert!((jump.error / jump.settled - (1.0 - (21.5f64 / 101.5).powf(0.6))).abs() < 0.01, "{jump:?}");
+    }
+
+    /// Trains under a new load, late: their ages tell nothing, and the track is three times as old as the cell.
+    #[test]
+    fn scatter_of_trains_of_one_age_does_not_become_settlement() {
+        let law = Hardening { exponent: 0.3, error: 0.1, scatter: 20e-6 };
+        let added = [60e-6, 95e-6, 40e-6, 70e-6];
+        for turned in 0..4 {
+            let train = |at: usize| Computed { age: 40.0 + at as f64, added: added[(at + turned) % 4] };
+            let known: Vec<Computed> = (0..4).map(train).collect();
+            let jump = law.settled(&known, 1, 120, 1).unwrap();
+            let now = known[3].added;
+            assert!((jump.settled - now).abs() < jump.error && jump.error < 0.6 * now.max(60e-6), "{jump:?} {now}");
+            assert!(jump.settled > 0.0);
+        }
+        let nothing: Vec<Computed> = (40..44).map(|age| Computed { age: f64::from(age), added: 0.0 }).collect();
+        assert_eq!(law.settled(&nothing, 1, 120, 5).unwrap().settled, 0.0);
     }
 
     #[test]

@@ -21,6 +21,11 @@ pub const OF_STRIDE: f64 = 0.9;
 /// Rule for sharing contacts between grains when inertia is added for the step.
 pub const SHARING: Sharing = Sharing::ByNeed;
 
+/// Mass that a grain of a track gets at least, kg, for a time step (s) and contacts of a stiffness (N/m).
+pub fn mass_for_step(time_step: f64, stiffness: f64) -> f64 {
+    Stride { step: time_step / OF_STRIDE, sharing: SHARING }.least_mass(stiffness)
+}
+
 /// Version: increased when the same parts are built in another way, or stored in another form.
 const METHOD: &str = "track on grains 12";
 

@@ -25,8 +25,8 @@ mod underway;
 mod volumes;
 mod wheels;
 
-pub use build::Parts;
 pub(super) use build::{OF_STRIDE, SHARING};
+pub use build::{Parts, mass_for_step};
 pub use energy::PassageEnergy;
 pub use recording::VolumeSample;
 pub use ride::Riders;
