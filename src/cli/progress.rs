@@ -78,6 +78,14 @@ impl Patient {
         patient
     }
 
+    /// Goes on under another name.
+    pub(super) fn rename(&mut self, message: impl Into<Cow<'static, str>>) {
+        self.message = message.into();
+        if let Some(bar) = &self.bar {
+            bar.set_message(self.message.clone());
+        }
+    }
+
     pub(super) fn show(&mut self, done: u64, all: u64) {
         self.begun.get_or_insert((done, Instant::now()));
         if self.bar.is_none() && self.start.elapsed() < Duration::from_secs(2) {

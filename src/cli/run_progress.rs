@@ -11,6 +11,8 @@ use std::ops::ControlFlow;
 /// Shows a run while it goes on.
 pub(super) struct Shown {
     bar: progress::Patient,
+    /// Whether the bar is that of trains over all blocks.
+    trains: bool,
     tests: bool,
     /// What a track on grains is busy with, and blocks done of all.
     stage: String,
@@ -22,19 +24,24 @@ impl Shown {
     pub(super) fn new(graph: &Graph, from: Option<&Checkpoint>) -> Shown {
         let tests = matches!(graph.schedule, Schedule::Actuators(_));
         let bar = progress::Patient::new(if tests { "the bed" } else { "the run" });
-        Shown { bar, tests, stage: String::new(), blocks: None, way: Way::new(graph, from) }
+        Shown { bar, trains: false, tests, stage: String::new(), blocks: None, way: Way::new(graph, from) }
     }
 
     /// Shows a stage of a track on grains: each has a bar of its own, and trains that of the whole run.
     fn stage(&mut self, progress: &Progress) {
-        let trains = self.way.as_ref().filter(|_| progress.stage == Stage::Passage.to_string());
-        let share = trains.map_or(progress.share, |way| way.share(progress.share));
+        let way = self.way.as_ref().filter(|_| progress.stage == Stage::Passage.to_string());
+        let share = way.map_or(progress.share, |way| way.share(progress.share));
         if self.stage != progress.stage {
             self.stage.clone_from(&progress.stage);
             let block =
                 self.blocks.map_or(String::new(), |(done, all)| format!(", block {} of {all}", (done + 1).min(all)));
-            let of_run = if trains.is_some() { "the run: " } else { "" };
-            self.bar = progress::Patient::new(format!("{of_run}{}{block}", self.stage));
+            let of_run = if way.is_some() { "the run: " } else { "" };
+            let message = format!("{of_run}{}{block}", self.stage);
+            // time goes on from block to block
+            match std::mem::replace(&mut self.trains, way.is_some()) && self.trains {
+                true => self.bar.rename(message),
+                false => self.bar = progress::Patient::new(message),
+            }
         }
         pack::show_share(&mut self.bar, share);
     }
@@ -42,7 +49,7 @@ impl Shown {
 
 /// How far trains are on their way over grains.
 struct Way {
-    /// Weight of the blocks that are done, of the one under way, and of all.
+    /// Weight of the blocks that are done, of the one under way as planned, and of all.
     done: f64,
     block: f64,
     all: f64,
@@ -57,22 +64,23 @@ impl Way {
             Some(Clock::Axles(axles)) => axles,
             _ => 0,
         };
-        let (done, left) = (weight.between(&blocks, 0, axles), weight.between(&blocks, axles, blocks.total));
-        let mut way = Way { done, block: 0.0, all: done + left, weight, blocks };
+        let done = weight.between(&blocks, 0, axles);
+        let mut way = Way { done, block: 0.0, all: done, weight, blocks };
         way.begin(axles);
         Some(way)
     }
 
     /// The block after so many axles begins.
     fn begin(&mut self, axles: u64) {
+        self.all = self.done + self.weight.between(&self.blocks, axles, self.blocks.total);
         let over = axles >= self.blocks.total;
         let block = (!over).then(|| self.blocks.next_block(axles));
         self.block = block.map_or(0.0, |block| self.weight.of_block(&self.blocks, &block));
     }
 
-    /// A block has come to its end.
+    /// A block has come to its end, maybe earlier than planned.
     fn end(&mut self, block: &Block) {
-        self.done += self.block;
+        self.done += self.weight.of_block(&self.blocks, block);
         self.begin(block.before + block.axles);
     }
 
@@ -103,5 +111,29 @@ impl Listener for Shown {
             _ => {}
         }
         ControlFlow::Continue(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::{NoModules, Override};
+
+    /// Blocks of 20 axles on cells, which all count the same.
+    #[test]
+    fn blocks_that_end_early_do_not_bring_the_run_forward() {
+        let text = include_str!("../../scenarios/transition_short.track");
+        let wanted = ["solve.substructure=cells", "traffic.total=100 axles"].map(|set| Override::parse(set).unwrap());
+        let compiled = crate::compile("transition_short.track", text, &NoModules, &wanted);
+        let mut way = Way::new(&compiled.graph.unwrap(), None).unwrap();
+        assert!(matches!(way.weight, BlockWeight::Equal));
+        let passes = |way: &mut Way, before: u64, trains: u64| way.end(&way.blocks.block(before, trains));
+        assert_eq!((way.share(0.0), way.share(0.5)), (0.0, 0.1));
+        passes(&mut way, 0, 5);
+        passes(&mut way, 20, 1);
+        // two are done; 76 axles are left for blocks of 20
+        assert!((way.share(0.0) - 2.0 / 6.0).abs() < 1e-12, "{}", way.share(0.0));
+        [(24, 5), (44, 5), (64, 5), (84, 4)].into_iter().for_each(|(before, trains)| passes(&mut way, before, trains));
+        assert_eq!(way.share(0.0), 1.0);
     }
 }
