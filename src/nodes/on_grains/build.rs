@@ -23,7 +23,7 @@ pub const SHARING: Sharing = Sharing::ByNeed;
 
 /// Mass that a grain of a track gets at least, kg, for a time step (s) and contacts of a stiffness (N/m).
 pub fn mass_for_step(time_step: f64, stiffness: f64) -> f64 {
-    Stride { step: time_step / OF_STRIDE, sharing: SHARING }.least_mass(stiffness)
+    Stride { step: time_step / OF_STRIDE, sharing: SHARING }.least_inertia(stiffness, 1.0)
 }
 
 /// Version: increased when the same parts are built in another way, or stored in another form.

@@ -74,7 +74,7 @@ impl Stride {
     /// Prepares a bed for some steps, and returns the share of mass added.
     pub fn hold<R: Real>(&self, bed: &mut Bed<R>) -> Result<f64, Failure> {
         let stiffness = stiffness(bed);
-        let least = |surface: u16, mass: f64| self.least_mass(stiffness[usize::from(surface)]) / mass;
+        let least = |surface: u16, mass: f64| self.least_inertia(stiffness[usize::from(surface)], mass);
         let scaling = match self.sharing {
             Sharing::Even => bed.hold_time_step(self.step, |body| least(body.surface, body.mass))?,
             Sharing::ByNeed => bed.hold_time_step_by_need(self.step, least)?,
@@ -82,10 +82,10 @@ impl Stride {
         Ok(scaling.added_share)
     }
 
-    /// Mass that a grain gets at least, kg, for contacts of a stiffness (N/m) that may come.
-    pub fn least_mass(&self, stiffness: f64) -> f64 {
+    /// Least inertia of a grain / its mass (kg), for contacts of a stiffness (N/m) that may come.
+    pub fn least_inertia(&self, stiffness: f64, mass: f64) -> f64 {
         let root = self.sharing.prior() / (SAFE * self.step);
-        stiffness / (root * root)
+        stiffness / (root * root * mass)
     }
 
     /// Runs for a time, s, and returns the number of steps.
