@@ -93,7 +93,7 @@ fn heavier_below(bed: &GrainLayer<'_>, step: f64) -> f64 {
     }
 }
 
-/// A time in us, to three digits.
+/// A time, s, in us to a tenth.
 fn micro(time: f64) -> String {
     number((time * 1e7).round() / 10.0)
 }
