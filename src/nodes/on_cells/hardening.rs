@@ -124,8 +124,8 @@ impl Line {
         Line { exponent, rate, added, slope: products / spread, spread }
     }
 
-    /// The line by ridge regression: its slope is 0 in the mean before a train is seen, with a standard deviation of the
-    /// root mean square of what a train adds / its mean rate. Trains deviate from the line by `scatter`, m.
+    /// The line by ridge regression: before a train is seen, its slope is 0 with a standard deviation, the root mean
+    /// square of what a train adds / the mean rate. Trains deviate from the line by `scatter`, m.
     fn held(self, trains: &[Computed], scatter: f64) -> Line {
         let squares = trains.iter().map(|train| train.added * train.added).sum::<f64>() / trains.len() as f64;
         if squares == 0.0 {
