@@ -93,6 +93,9 @@ pub struct TestWork {
     /// Time step, s.
     pub time_step: f64,
     pub packing_steps: f64,
+    /// Time on two cores to make the beds that a cache keeps, s: a later run of the same beds does not need it.
+    #[serde(default)]
+    pub making: f64,
     /// Steps of the test, including the setting down.
     pub test_steps: f64,
     /// Packings at most; cost and steps are those of all.

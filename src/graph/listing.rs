@@ -431,7 +431,7 @@ fn cost_lines(cost: &Cost) -> String {
         Work::Tests(work @ TestWork { grains, pebbles, time_step, packing_steps, test_steps, .. }) => format!(
             "\nestimate: about {} grains of {} pebbles in all, step {} us\n\
              estimate: about {} steps to pack the bed, {} to test it{}\n\
-             estimate: about {} on two cores, within a factor of two, {} MB\n",
+             estimate: about {} on two cores, within a factor of two, {} MB\n{}",
             rounded(grains),
             rounded(pebbles),
             number((time_step * 1e7).round() / 10.0),
@@ -439,7 +439,8 @@ fn cost_lines(cost: &Cost) -> String {
             rounded(test_steps),
             times(work),
             took(cost, work),
-            rounded(cost.bytes as f64 / 1e6)
+            rounded(cost.bytes as f64 / 1e6),
+            of_making(work)
         ),
     }
 }
@@ -451,6 +452,12 @@ fn times(TestWork { packings, least_packings, .. }: TestWork) -> String {
         most if least_packings < most && least_packings > 0 => format!(", {least_packings} to {most} times"),
         most => format!(", {most} times"),
     }
+}
+
+/// `estimate: 5 min of this for making the bed, unless it is kept`; nothing below a second.
+fn of_making(TestWork { making, packings, .. }: TestWork) -> String {
+    let bed = if packings > 1 { "the beds, unless they are kept" } else { "the bed, unless it is kept" };
+    if making < 1.0 { String::new() } else { format!("estimate: {} of this for making {bed}\n", duration(making)) }
 }
 
 /// `18 min`, `55 min to 3.7 h`
@@ -506,5 +513,18 @@ impl Listing {
         }
         out.push_str("}\n");
         out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_kept_bed_saves_is_told() {
+        let told = |making: f64, packings: u32| of_making(TestWork { making, packings, ..TestWork::default() });
+        assert_eq!(told(0.4, 1), "");
+        assert_eq!(told(300.0, 1), "estimate: 5 min of this for making the bed, unless it is kept\n");
+        assert_eq!(told(900.0, 3), "estimate: 15 min of this for making the beds, unless they are kept\n");
     }
 }

@@ -25,6 +25,9 @@ const WRITING: f64 = 0.06;
 /// Bytes per unknown: bands and the windows of the inverse; and of the program itself.
 const BYTES: u64 = 6_000;
 const PROGRAM: u64 = 19 << 20;
+/// Bytes per value of the forces of sleepers that a passage gives to cells of grains: 2.6 copies
+/// (`benches/grain_errors.py`).
+const FORCE_BYTES: f64 = 21.0;
 
 /// The cost of a track at rest.
 pub(super) fn at_rest(node: &TrackNode) -> Cost {
@@ -57,9 +60,24 @@ pub(super) fn of_blocks(node: &TrackNode, blocks: &Blocks, outlook: &Outlook) ->
     Cost {
         seconds: seconds + standing + apart,
         seconds_on_two_cores: seconds * side_by_side(blocks) + 0.5 * standing + apart,
-        bytes: PROGRAM + unknowns as u64 * BYTES,
+        bytes: bytes(unknowns),
         work: Work::Passages(work),
     }
+}
+
+/// Bytes of a program with a track.
+fn bytes(unknowns: usize) -> u64 {
+    PROGRAM + unknowns as u64 * BYTES
+}
+
+/// Bytes of the track that drives cells of grains.
+pub(super) fn bytes_of_track(node: &TrackNode) -> u64 {
+    bytes(unknowns(node))
+}
+
+/// Bytes of the forces of all sleepers over a passage.
+pub(super) fn bytes_of_forces(seats: usize, (train, plan): (&Train, &PassagePlan)) -> u64 {
+    (FORCE_BYTES * seats as f64 * steps(train, plan) as f64) as u64
 }
 
 /// Time of standing bogies over all seats on springs in adaptive blocks, s.
@@ -115,12 +133,7 @@ pub(super) fn with_records(cost: &mut Cost, blocks: &Blocks, records: &[Record])
 
 /// A cost without parallel work.
 fn cost(seconds: f64, work: PassageWork, unknowns: usize) -> Cost {
-    Cost {
-        seconds,
-        seconds_on_two_cores: seconds,
-        bytes: PROGRAM + unknowns as u64 * BYTES,
-        work: Work::Passages(work),
-    }
+    Cost { seconds, seconds_on_two_cores: seconds, bytes: bytes(unknowns), work: Work::Passages(work) }
 }
 
 /// Rail and slab nodes have two unknowns each, a sleeper one.

@@ -7,7 +7,7 @@ use trackbed::solvers::granular::{
     Bed, BodyId, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, Energy, Gravity, Linear, Placed, Real, Sphere,
 };
 
-/// 1800 bodies, every fifth a clump of two, set going; enough for several tasks of every kind.
+/// 3600 bodies, every fifth a clump of two, set going: more tasks than one thread computes at once.
 fn bed<R: Real>() -> Bed<R> {
     let law = Linear {
         friction: 0.5,
@@ -23,8 +23,8 @@ fn bed<R: Real>() -> Bed<R> {
     let pebble = |x: f64| Pebble { centre: Vector3::new(x, 0.0, 0.0), radius: 0.7 };
     let template = Template::from_pebbles(&[pebble(-0.3), pebble(0.3)]).unwrap();
     let mut seed = 1;
-    for tile in 0..9 {
-        let shift = [side * f64::from(tile % 3), side * f64::from(tile / 3), 0.0];
+    for tile in 0..18 {
+        let shift = [tile % 3, tile / 3 % 3, tile / 9].map(|at| side * f64::from(at));
         for (k, s) in spheres.iter().enumerate() {
             let centre = crate::scenes::add(s.centre, shift);
             let mut vector = |size: f64| [0, 1, 2].map(|_| size * random(&mut seed));

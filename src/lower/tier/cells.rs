@@ -12,6 +12,7 @@ use crate::graph::{
 };
 use crate::lower::bays;
 use crate::lower::bed::{self, BedUse, beds, beds_of_spheres};
+use crate::lower::cost::{bytes_of_forces, bytes_of_track};
 use crate::lower::foundation::Foundations;
 use crate::lower::{Draft, crib, glue, track};
 use crate::scenario::{self, Base, Given, Layer, Loading, Origin, Scenario, Seat, Stack, Track};
@@ -85,8 +86,11 @@ impl Tier for Cells {
             headway_time,
             alone: train.wheel_base() / train.speed,
             trains: trains_of_cells(&blocks, blocks_of(&blocks), left_open(scenario)),
+            bytes_of_forces: bytes_of_forces(scenario.track.seats.len(), blocks.kind(0)),
         };
-        let cost = of_packings(scenario, cells_under_track(draft, passing));
+        let track = track::track(draft);
+        let mut cost = of_packings(scenario, cells_under_track(draft, passing));
+        cost.bytes += bytes_of_track(&track);
         refusals.extend(match asked {
             true => refused::of_cells(scenario),
             false => waiting::refusal(scenario).into_iter().collect(),
@@ -96,10 +100,7 @@ impl Tier for Cells {
             count => format!("a cell of grains for each of {count} distinct sleepers"),
         };
         let node = node(draft, beds, (cells, cell_of), headway_time);
-        let nodes = vec![
-            Node::new("track", Model::Track(Box::new(track::track(draft)))),
-            Node::new("grains", Model::Cells(node)),
-        ];
+        let nodes = vec![Node::new("track", Model::Track(Box::new(track))), Node::new("grains", Model::Cells(node))];
         Ok(Proposal {
             edges: edges(&nodes),
             nodes,

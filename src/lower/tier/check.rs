@@ -8,6 +8,7 @@ use crate::diag::{Diagnostic, Severity};
 use crate::graph::{BedPlan, CellPlan, CellsNode, Cost, Model, Node};
 use crate::lower::Draft;
 use crate::lower::bed::{self, BedUse, beds};
+use crate::lower::cost::bytes_of_forces;
 use crate::scenario::Scenario;
 use crate::schema::Reads;
 
@@ -44,6 +45,7 @@ pub(super) fn check(draft: &Draft<'_>, blocks: u64) -> Check {
         headway_time: node.headway_time,
         alone: train.wheel_base() / train.speed,
         trains: trains_of_cells(plan, blocks as f64, cells::left_open(scenario)),
+        bytes_of_forces: bytes_of_forces(scenario.track.seats.len(), plan.kind(0)),
     };
     let cost = cells_under_track(draft, passing);
     Check { node: Some(Node::new("check", Model::Check(node))), cost: Some(cost), refusals }

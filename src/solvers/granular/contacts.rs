@@ -72,8 +72,8 @@ impl<R: Real> Contacts<R> {
         self.damping.resize(blocks, [[R::default(); BLOCK]; 3]);
     }
 
-    /// Computes the forces of `tasks` from the state of the pebbles; energies only if they are watched.
-    pub fn evaluate(&mut self, tasks: &[Task], around: Surroundings<R>) -> ContactEnergy {
+    /// Computes the forces of `tasks` from the state of the pebbles; an energy per task, 0 if energies are not watched.
+    pub fn evaluate(&mut self, tasks: &[Task], around: Surroundings<R>) -> Vec<ContactEnergy> {
         let start = tasks[0].block as usize;
         let mut shear = &mut self.shear[start..];
         let mut outcomes = &mut self.outcomes[start * BLOCK..];
@@ -98,10 +98,7 @@ impl<R: Real> Contacts<R> {
             });
             (shear, outcomes, damping) = (rest_shear, rest_outcomes, rest_damping);
         }
-        let energies: Vec<ContactEnergy> = passes.into_par_iter().map(R::dispatch).collect();
-        let mut total = ContactEnergy::default();
-        energies.into_iter().for_each(|energy| total += energy);
-        total
+        passes.into_par_iter().map(R::dispatch).collect()
     }
 }
 

@@ -17,11 +17,10 @@ use super::timings::Timings;
 use super::walls::{Wall, WallId, approach};
 use std::time::Instant;
 
-/// Number of tasks that one thread computes before it moves their bodies: their data fit into its cache.
+/// Number of tasks that one thread computes before it moves their bodies: their data fit into its cache. Several threads
+/// compute all contacts, then move all bodies: they wait for each other after both, and these waits cost more than the
+/// cache saves (docs/validation.md, speed).
 const ALONE: usize = 3;
-/// Number of tasks per thread if several threads work: threads wait for each other twice per window. During
-/// these waits they compute what runs beside the contacts.
-const TOGETHER: usize = 4;
 
 /// Access to the walls between the computation of forces and the motion.
 pub struct Guided<'a> {
@@ -86,12 +85,14 @@ impl<R: Real> Between<'_, R> {
         mut energy: ContactEnergy,
     ) -> (ContactEnergy, Tally) {
         let mut tally = Tally::default();
-        let window = if rayon::current_num_threads() == 1 { ALONE } else { TOGETHER * rayon::current_num_threads() };
         let last = self.tasks.len().saturating_sub(1);
+        let window = if rayon::current_num_threads() == 1 { ALONE } else { last.max(1) };
         for begin in (0..last).step_by(window) {
             let tasks = &self.tasks[begin..=(begin + window).min(last)];
             let start = Instant::now();
-            energy += self.contacts.evaluate(tasks, Surroundings { records: self.records, laws, shifts, dt });
+            let around = Surroundings { records: self.records, laws, shifts, dt };
+            // task by task, so that the sum does not depend on the window
+            self.contacts.evaluate(tasks, around).into_iter().for_each(|of_task| energy += of_task);
             let forced = Instant::now();
             if let Some(drive) = drive {
                 let moving = Moving {

@@ -96,8 +96,11 @@ pub(super) fn of_rig(scenario: &Scenario, bed: Option<&BedNode>) -> Cost {
     let steps_beside = beside_pebbles * test_steps / PEBBLE_STEPS[1];
     let seconds =
         f64::from(packings) * (pebbles * (packing / PEBBLE_STEPS[0] + testing / PEBBLE_STEPS[1]) + steps_beside);
+    let pebbles_of_one = pebbles;
     let (grains, pebbles) = (copies * grains + beside_grains, copies * pebbles + beside_pebbles);
-    let work = TestWork { grains, pebbles, time_step: step, packing_steps, test_steps, packings, least_packings };
+    let making = f64::from(packings) * pebbles_of_one * packing / PEBBLE_STEPS[0];
+    let work =
+        TestWork { grains, pebbles, time_step: step, packing_steps, making, test_steps, packings, least_packings };
     cost(seconds, work)
 }
 
@@ -113,7 +116,7 @@ fn cost(seconds: f64, work: TestWork) -> Cost {
 /// Time step of grains under a track / sqrt(m / k) of the lightest grain; pebble steps per second on two cores, with
 /// soil and rail (`docs/validation.md`, a track on grains).
 const TRACK_STEP: f64 = 0.48;
-const TRACK_PEBBLE_STEPS: f64 = 16e6;
+const TRACK_PEBBLE_STEPS: f64 = 20e6;
 /// Time of the stages of building, s.
 const BUILDING: f64 = 0.7;
 
@@ -134,12 +137,15 @@ pub(in crate::lower::tier) fn grains_under_track(draft: &Draft<'_>, blocks: Opti
     let time_step = scenario.solve.grains.step.map_or(TRACK_STEP * light, |step| *step);
     let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
     let building = BUILDING + if section.crib.is_some() { POURING } else { 0.0 };
-    let time = building + blocks.map_or(0.0, |blocks| passing.between(blocks, 0, blocks.total));
-    let test_steps = time / time_step;
-    let seconds = 0.5 * cell * packing_steps / PEBBLE_STEPS[0] + pebbles * test_steps / TRACK_PEBBLE_STEPS;
+    let passing = blocks.map_or(0.0, |blocks| passing.between(blocks, 0, blocks.total));
+    let of_time = |time: f64| pebbles * time / time_step / TRACK_PEBBLE_STEPS;
+    let making = 0.5 * cell * packing_steps / PEBBLE_STEPS[0] + of_time(building);
     let Repeats { least: least_packings, most: packings } = scenario.solve.grains.repeats;
-    let work = TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings, least_packings };
-    cost(f64::from(packings) * seconds, work)
+    let test_steps = (building + passing) / time_step;
+    let all = |seconds: f64| f64::from(packings) * seconds;
+    let making = all(making);
+    let work = TestWork { grains, pebbles, time_step, packing_steps, making, test_steps, packings, least_packings };
+    cost(making + all(of_time(passing)), work)
 }
 
 /// Trains over cells of grains.
@@ -155,11 +161,15 @@ pub(in crate::lower::tier) struct PassingCells {
     pub alone: f64,
     /// Trains that each cell computes.
     pub trains: f64,
+    /// Bytes of the forces that drive the cells.
+    pub bytes_of_forces: u64,
 }
 
 /// Additional time of a train that runs alone, and of every train, s.
 const BESIDE_ALONE: f64 = 0.1;
 const BESIDE_EACH: f64 = 0.04;
+/// Bytes per pebble of a cell: between cells that part during a run and cells that do not (`benches/grain_errors.py`).
+const CELL_BYTES: f64 = 1_800.0;
 /// Pebble steps per second of a cell on one core, and of building it on two (`benches/estimates.py`); time of a train
 /// on a cell that has both cores / on one core.
 const CELL_STEPS: f64 = 15e6;
@@ -188,9 +198,13 @@ pub(in crate::lower::tier) fn blocks_of(plan: &Blocks) -> f64 {
 pub(in crate::lower::tier) fn of_packings(scenario: &Scenario, of_one: Cost) -> Cost {
     let Repeats { least: least_packings, most: packings } = scenario.solve.grains.repeats;
     match of_one.work {
-        Work::Tests(work) => {
-            cost(f64::from(packings) * of_one.seconds_on_two_cores, TestWork { packings, least_packings, ..work })
-        }
+        Work::Tests(work) => Cost {
+            bytes: of_one.bytes,
+            ..cost(
+                f64::from(packings) * of_one.seconds_on_two_cores,
+                TestWork { packings, least_packings, making: f64::from(packings) * work.making, ..work },
+            )
+        },
         Work::Passages(_) => of_one,
     }
 }
@@ -217,12 +231,14 @@ pub(in crate::lower::tier) fn cells_under_track(draft: &Draft<'_>, passing: Pass
     let packing = 0.5 * pebbles * packing_steps / PEBBLE_STEPS[0];
     let placing = passing.kinds as f64 * cell_pebbles * built / BUILT_STEPS;
     let turns = (passing.cells / 2) as f64 + (passing.cells % 2) as f64 * ON_BOTH_CORES;
-    let seconds = packing + placing + turns * cell_pebbles * passed / CELL_STEPS;
+    let making = packing + placing;
+    let seconds = making + turns * cell_pebbles * passed / CELL_STEPS;
     let cells = passing.cells as f64;
     let test_steps = cells * (built + passed);
     let [grains, pebbles] = [cell_grains, cell_pebbles].map(|count| cells * count);
     let (packings, least_packings) = (1, 1);
-    cost(seconds, TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings, least_packings })
+    let work = TestWork { grains, pebbles, time_step, packing_steps, making, test_steps, packings, least_packings };
+    Cost { bytes: passing.bytes_of_forces + (CELL_BYTES * pebbles) as u64, ..cost(seconds, work) }
 }
 
 fn pebbles_of(shape: &Shape) -> f64 {
