@@ -119,10 +119,10 @@ fn confidence(
     if graph.nodes.iter().any(|node| matches!(node.model, Model::Cells(_))) {
         let error = scalars.get("update_error").filter(|error| error.value > 0.0);
         told.extend(error.map(|error| {
-            let error = millimetres(error.value);
             format!(
-                "the cells do not compute every train: the standard error of the settlement is {error} at the \
-                worst sleeper"
+                "the cells do not compute every train: the standard error of the settlement is {} at the worst sleeper{}",
+                millimetres(error.value),
+                worst_block(tables, error.value)
             )
         }));
     }
@@ -148,6 +148,19 @@ fn confidence(
     told
 }
 
+/// The block that brings most of an error of the settlement, m, if one does.
+fn worst_block(tables: &RunTables, error: f64) -> String {
+    let worst = tables.blocks.iter().max_by(|a, b| a.error_m.total_cmp(&b.error_m)).filter(|b| b.error_m > 0.5 * error);
+    worst.filter(|_| tables.blocks.len() > 2).map_or(String::new(), |block| {
+        let direction = match block.error_m > DIRECTION * block.max_settlement_m {
+            true => "; later results show the direction only",
+            false => "",
+        };
+        let error = millimetres(block.error_m);
+        format!(", {error} of it by the {} axles after {} axles{direction}", block.block_axles, block.axles)
+    })
+}
+
 /// Rise of sleepers over grains under trains, if any.
 fn risen(tables: &RunTables) -> Option<String> {
     let start = |row: &SleeperRow| tables.sleepers.iter().find(|first| first.sleeper == row.sleeper);
@@ -168,6 +181,8 @@ fn risen(tables: &RunTables) -> Option<String> {
 
 /// Smallest rise of a sleeper that is reported, m.
 const RISEN: f64 = 1e-6;
+/// Error of a block / largest settlement beyond which later results show the direction only.
+const DIRECTION: f64 = 0.25;
 
 /// Spread between the laws of the scene, and the laws that are used outside their calibration.
 fn spread_of_laws(scenario: &Scenario, warnings: &[Warned], scalars: &BTreeMap<String, Scalar>) -> String {
@@ -354,6 +369,7 @@ fn rounded(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::{BlockRow, example};
 
     fn row(axles: u64, sleeper: &str, settlement_m: f64) -> SleeperRow {
         SleeperRow {
@@ -370,6 +386,26 @@ mod tests {
             contact_loss_s: 0.0,
             trains_passing: 1,
         }
+    }
+
+    #[test]
+    fn a_block_that_brings_most_of_the_error_is_told() {
+        let block = |axles: u64, error_m: f64| BlockRow {
+            axles,
+            block_axles: 20,
+            error_m,
+            max_settlement_m: 6e-3,
+            ..example::transition().blocks[0].clone()
+        };
+        let tables = |errors: [f64; 3]| RunTables {
+            blocks: (0..3).map(|at| block(20 * at as u64, errors[at])).collect(),
+            ..RunTables::default()
+        };
+        assert_eq!(worst_block(&tables([0.1e-3, 0.1e-3, 0.1e-3]), 0.3e-3), "");
+        let told = worst_block(&tables([0.1e-3, 0.1e-3, 0.4e-3]), 0.6e-3);
+        assert_eq!(told, ", 0.4 mm of it by the 20 axles after 40 axles");
+        let told = worst_block(&tables([0.1e-3, 0.1e-3, 4e-3]), 4.2e-3);
+        assert_eq!(told, ", 4 mm of it by the 20 axles after 40 axles; later results show the direction only");
     }
 
     #[test]
