@@ -17,9 +17,9 @@ use super::timings::Timings;
 use super::walls::{Wall, WallId, approach};
 use std::time::Instant;
 
-/// Number of tasks that one thread computes before it moves their bodies: their data fit into its cache. Several threads
-/// compute all contacts, then move all bodies: they wait for each other after both, and these waits cost more than the
-/// cache saves (docs/validation.md, speed).
+/// Number of tasks that one thread computes before it moves their bodies: their data fit into its cache. Several
+/// threads compute all contacts, then move all bodies: they wait for each other after both, and these waits cost more
+/// than the cache saves (docs/validation.md, speed).
 const ALONE: usize = 3;
 
 /// Access to the walls between the computation of forces and the motion.
