@@ -27,7 +27,7 @@ pub fn mass_for_step(time_step: f64, stiffness: f64) -> f64 {
 }
 
 /// Version: increased when the same parts are built in another way, or stored in another form.
-const METHOD: &str = "track on grains 12";
+const METHOD: &str = "track on grains 13";
 
 /// Data of a track on grains.
 #[derive(Clone, Copy)]

@@ -83,7 +83,9 @@ fn in_turn(
     };
     bed.guided_step(|walls| {
         for (wall, foot) in &*sleepers {
-            pushes[*foot] = walls.felt(*wall).force.z;
+            let felt = walls.felt(*wall);
+            pushes[*foot] = felt.force.z;
+            rail.hold(*foot, felt.stiffness, felt.dashpot)?;
             rail.turn(*foot, walls.moment(*wall)[1]);
         }
         in_turn(others, rail, pushes, spent, wheels)?;

@@ -10,8 +10,8 @@ use crate::solvers::granular::{
     WallId, WallMotion,
 };
 use crate::solvers::track::{
-    Foot, Irregularity, Leapfrog, Loads, Pitch, RailEnds, RailSection, Seat, Track, TrackLevel, TrackModel, WheelLoads,
-    solve_static,
+    Foot, Irregularity, Leapfrog, Loads, Pitch, RailEnds, RailSection, Seat, Track, TrackLevel, TrackModel, UnderPad,
+    WheelLoads, solve_static,
 };
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -75,6 +75,7 @@ struct Columns {
     /// Distance of every column from the middle of its sleeper, along the rail, m.
     shift: f64,
     pitch: Option<Pitch>,
+    pad: Option<UnderPad>,
     time_step: f64,
 }
 
@@ -89,6 +90,7 @@ impl Columns {
             lowered: |_| 0.0,
             shift: 0.0,
             pitch: None,
+            pad: None,
             time_step: 20e-6,
         }
     }
@@ -117,7 +119,7 @@ impl Columns {
             Some(node) => Some(SoilBelow::new(&mut bed, floor, plan, node)?),
             None => None,
         };
-        let model = rail(|_| Foot::Carried { mass: 150.0, pad: None, pitch: self.pitch });
+        let model = rail(|_| Foot::Carried { mass: 150.0, pad: self.pad, pitch: self.pitch });
         let level = TrackLevel::as_built(&model);
         let rail = Leapfrog::new(Arc::new(Track::new(model)?), &level, self.time_step)?;
         let standing = StandingBed { bed, sleepers, soil };
@@ -156,6 +158,35 @@ fn columns_of_spheres_are_springs() {
                 "{spheres} spheres, seat {seat}: {level} and {expected} m"
             );
         }
+    }
+}
+
+/// The underside of a pad weighs 5 g, half of what one contact needs at this step: it gets more, and the seats carry what
+/// they carry on a spring and a pad in series. A pad whose underside weighs 2 kg gets nothing.
+#[test]
+fn a_light_underside_gets_the_mass_that_its_contacts_need() {
+    let pad = |mass: f64| UnderPad { mass, stiffness: 70e6, damping: 14e3 };
+    let model = rail(|_| Foot::Sleeper {
+        mass: 150.0,
+        support_stiffness: 50e6 * 70e6 / 120e6,
+        support_damping: 0.0,
+        seating: None,
+    });
+    let track = Track::new(model.clone()).unwrap();
+    let level = TrackLevel::as_built(&model);
+    let on_springs =
+        |rail: &[(f64, f64)]| solve_static(&track, &level, &Loads { rail, ..Loads::default() }).unwrap().contact_forces;
+    let [unloaded, loaded] = [on_springs(&[]), on_springs(&[(middle(), WHEEL)])];
+    for (mass, gets) in [(5e-3, SLEEPERS as f64 * (3.0 * 0.01 - 5e-3)), (2.0, 0.0)] {
+        let mut coupled = Columns { pad: Some(pad(mass)), ..Columns::plain(1) }.build().unwrap();
+        coupled.come_to_rest(2.0, &mut |_| {}).unwrap();
+        let before = coupled.pushes.clone();
+        stand_under(&mut coupled, (middle(), WHEEL));
+        for seat in 0..SLEEPERS {
+            let (force, expected) = (coupled.pushes[seat] - before[seat], loaded[seat] - unloaded[seat]);
+            assert!((force - expected).abs() < 1e-3 * 40e3, "{mass} kg, seat {seat}: {force} and {expected} N");
+        }
+        assert!((coupled.rail.added_mass() - gets).abs() < 1e-9, "{mass} kg: {} kg", coupled.rail.added_mass());
     }
 }
 

@@ -43,13 +43,15 @@
 //! ```
 //!
 //! For the support of a sleeper, m is the mass of the sleeper; for a wheel, the mass of the wheel and the effective
-//! mass of the rail.
+//! mass of the rail. For a carried sleeper on a pad, m is the mass of the underside of the pad alone, and k and c are
+//! the sums over the contacts of the ground: [`Leapfrog::hold`] adds the mass that they need.
 //!
 //! **Wheels** that ride press by their contact law on the rail at the present time; the rail yields under them within
 //! its element. Beyond an absorbing end they press on the beam that continues the rail. The shape of this beam moves
 //! with the end, and the mass and stiffness of the shape belong to the end.
 
 mod energy;
+mod hold;
 #[cfg(test)]
 mod hooks;
 mod level;
@@ -132,8 +134,7 @@ impl Leapfrog {
         for sleeper in &track.sleepers {
             stiffness.add(sleeper.unknown, sleeper.unknown, -sleeper.support_stiffness);
         }
-        let mut mass = track.mass.clone();
-        ends::add_mass(&track, &mut mass);
+        let mass = hold::mass(&track, &[]);
         let damping = damping(&track, &mass, 0.0);
         let order = track.order();
         check_step(&track, None, time_step)?;

@@ -30,6 +30,8 @@ pub struct LeapfrogState {
     pub(super) pushes: Vec<f64>,
     /// Moments of the ground on carried feet, N m, as the slope of the rail.
     pub(super) turns: Vec<f64>,
+    /// Mass added to the undersides of carried feet, kg.
+    pub(super) added: Vec<f64>,
     pub(super) supports: Vec<f64>,
     pub(super) on_rail: Vec<(f64, f64)>,
     pub(super) level: TrackLevel,
@@ -52,6 +54,7 @@ impl LeapfrogState {
             acceleration: zeros,
             pushes: vec![0.0; track.carried.len()],
             turns: vec![0.0; track.carried.len()],
+            added: vec![0.0; track.carried.len()],
             supports: vec![0.0; track.sleepers.len()],
             on_rail: Vec::new(),
             level: level.clone(),
@@ -62,7 +65,7 @@ impl LeapfrogState {
     }
 
     /// The lengths of its lists.
-    fn shape(&self) -> [usize; 10] {
+    fn shape(&self) -> [usize; 11] {
         let [vehicles, wheels] = self.ride.shape();
         let lists = [
             &self.displacement,
@@ -72,9 +75,10 @@ impl LeapfrogState {
             &self.pushes,
             &self.supports,
             &self.turns,
+            &self.added,
         ];
-        let [a, b, c, d, e, f, g] = lists.map(Vec::len);
-        [a, b, c, d, e, f, g, self.level.settlements.len(), vehicles, wheels]
+        let [a, b, c, d, e, f, g, h] = lists.map(Vec::len);
+        [a, b, c, d, e, f, g, h, self.level.settlements.len(), vehicles, wheels]
     }
 }
 
@@ -92,6 +96,6 @@ impl Leapfrog {
             return Err(TrackError::Parameter { name, value, expected });
         }
         self.state.clone_from(state);
-        Ok(())
+        self.weigh()
     }
 }
