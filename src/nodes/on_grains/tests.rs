@@ -161,8 +161,8 @@ fn columns_of_spheres_are_springs() {
     }
 }
 
-/// The underside of a pad weighs 5 g, half of what one contact needs at this step: it gets more, and the seats carry what
-/// they carry on a spring and a pad in series. A pad whose underside weighs 2 kg gets nothing.
+/// The underside of a pad weighs 5 g, half of what one contact needs at this step: it gets more, and the seats carry
+/// what they carry on a spring and a pad in series. A pad whose underside weighs 2 kg gets nothing.
 #[test]
 fn a_light_underside_gets_the_mass_that_its_contacts_need() {
     let pad = |mass: f64| UnderPad { mass, stiffness: 70e6, damping: 14e3 };

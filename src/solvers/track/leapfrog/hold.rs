@@ -15,8 +15,8 @@ use crate::solvers::track::ends;
 use crate::solvers::track::error::TrackError;
 use crate::solvers::track::mesh::Track;
 
-/// Mass of an underside / the mass at the limit: what it must have, and what it gets, so that a few more contacts do not
-/// change it again.
+/// Mass of an underside / the mass at the limit: what it must have, and what it gets, so that a few more contacts do
+/// not change it again.
 const MUST: f64 = 2.0;
 const GETS: f64 = 3.0;
 
@@ -29,8 +29,8 @@ pub(super) fn mass(track: &Track, added: &[f64]) -> SymmetricBanded {
 }
 
 impl Leapfrog {
-    /// Adds mass to the underside of the i-th carried foot where the contacts of the ground on it, with stiffnesses (N/m)
-    /// and dampers (N s/m) that add up to these, need more at this step.
+    /// Adds mass to the underside of the i-th carried foot where the contacts of the ground on it, with stiffnesses
+    /// (N/m) and dampers (N s/m) that add up to these, need more at this step.
     pub fn hold(&mut self, i: usize, stiffness: f64, dampers: f64) -> Result<(), TrackError> {
         let underside = self.track.carried[i].underside;
         let limit = self.time_step * (0.25 * self.time_step * stiffness + dampers);
