@@ -79,8 +79,8 @@ def run(edits, seed, out):
         # 1: an expectation of the scene is missed
         if status not in (0, 256) or not (out / "sleepers.csv").exists():
             sys.exit(f"{edits}: {said[-3000:]}")
-        shutil.rmtree(cache, ignore_errors=True)
         kept.write_text(json.dumps([time.monotonic() - began, 1024 * used.ru_maxrss]))
+        shutil.rmtree(cache, ignore_errors=True)
     return json.loads(kept.read_text())
 
 

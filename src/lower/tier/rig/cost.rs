@@ -96,9 +96,8 @@ pub(super) fn of_rig(scenario: &Scenario, bed: Option<&BedNode>) -> Cost {
     let steps_beside = beside_pebbles * test_steps / PEBBLE_STEPS[1];
     let seconds =
         f64::from(packings) * (pebbles * (packing / PEBBLE_STEPS[0] + testing / PEBBLE_STEPS[1]) + steps_beside);
-    let pebbles_of_one = pebbles;
+    let making = f64::from(packings) * pebbles * packing / PEBBLE_STEPS[0];
     let (grains, pebbles) = (copies * grains + beside_grains, copies * pebbles + beside_pebbles);
-    let making = f64::from(packings) * pebbles_of_one * packing / PEBBLE_STEPS[0];
     let work =
         TestWork { grains, pebbles, time_step: step, packing_steps, making, test_steps, packings, least_packings };
     cost(seconds, work)

@@ -30,7 +30,7 @@ pub(super) fn mass(track: &Track, added: &[f64]) -> SymmetricBanded {
 
 impl Leapfrog {
     /// Adds mass to the underside of the i-th carried foot where the contacts of the ground on it, with stiffnesses
-    /// (N/m) and dampers (N s/m) that add up to these, need more at this step.
+    /// (N/m) and dampers (N s/m) that add up to these, need more at this step. Fails if the track is a mechanism.
     pub fn hold(&mut self, i: usize, stiffness: f64, dampers: f64) -> Result<(), TrackError> {
         let underside = self.track.carried[i].underside;
         let limit = self.time_step * (0.25 * self.time_step * stiffness + dampers);
